@@ -26,7 +26,7 @@ from loky import cpu_count, get_reusable_executor
 from loky.process_executor import ShutdownExecutorError
 
 from diorama_core.io.large_libraries import load_quickly
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 Result = TypeVar("Result")
 log = logging.getLogger(__name__)
@@ -115,7 +115,7 @@ def there(function: Callable[..., Result], *arguments: Any) -> Result:
 def each_there(
     function: Callable[..., Result],
     arguments: Sequence[tuple[Any, ...]],
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     message: str = "",
 ) -> list[Result]:
     """The function's results for several arguments, in order: some from processes, some from here.
@@ -129,20 +129,19 @@ def each_there(
     results: list[Any] = [None] * len(arguments)
     waiting = deque(range(len(arguments)))
 
-    def draw(call: Callable[..., Result], progress: Progress | None) -> None:
+    def draw(call: Callable[..., Result], progress: Progress) -> None:
         while waiting:
             try:
                 k = waiting.popleft()
             except IndexError:  # another thread drew the last one
                 return
             results[k] = call(function, *arguments[k])
-            if progress is not None:
-                progress.report(1.0 - len(waiting) / len(arguments), message)
+            progress.report(1.0 - len(waiting) / len(arguments), message)
 
     others = max(min(_KEPT.count, len(arguments) - 1), 0)
     with ThreadPoolExecutor(max(others, 1)) as threads:
         try:
-            beside = [threads.submit(draw, there, None) for _ in range(others)]
+            beside = [threads.submit(draw, there, SILENT) for _ in range(others)]
             draw(_here, progress)
             for thread in beside:
                 thread.result()

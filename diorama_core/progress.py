@@ -50,7 +50,7 @@ def _ignore(event: ProgressEvent) -> None:
 class Progress:
     """Where long work reports and where it learns that it should stop.
 
-    `Progress()` reports nowhere and is never cancelled, so every function can take one by default.
+    `Progress()` reports nowhere and is never cancelled.
     """
 
     on_event: Callable[[ProgressEvent], None] = _ignore
@@ -87,3 +87,7 @@ class Progress:
     def _at(self, fraction: float) -> float:
         """On the whole job's scale; a part ends exactly where the next one begins."""
         return self.start * (1.0 - fraction) + self.end * fraction
+
+
+SILENT = Progress()
+"""The default of functions that take a progress: reports nowhere and is never cancelled."""

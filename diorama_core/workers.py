@@ -17,7 +17,7 @@ from multiprocessing import get_context, parent_process
 from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -247,7 +247,7 @@ class RayWorkers:
 
 
 def each(
-    work: Callable[[Item], Result], items: Sequence[Item], progress: Progress | None = None, message: str = ""
+    work: Callable[[Item], Result], items: Sequence[Item], progress: Progress = SILENT, message: str = ""
 ) -> list[Result]:
     """Work on all items, two at a time; results in order, so that threads change nothing.
 
@@ -262,8 +262,7 @@ def each(
         try:
             for result in pool.map(work, items):
                 results.append(result)
-                if progress is not None:
-                    progress.report(len(results) / len(items), message)
+                progress.report(len(results) / len(items), message)
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise

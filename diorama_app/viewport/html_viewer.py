@@ -33,7 +33,7 @@ from diorama_core.export.files import write_whole
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.gltf import write_gathered
 from diorama_core.geometry.rotations import quaternion_wxyz
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Camera, Scene
 
 Y_UP_TO_WORLD = (float(np.sqrt(0.5)), float(np.sqrt(0.5)), 0.0, 0.0)
@@ -46,7 +46,7 @@ View = tuple[Float[np.ndarray, "3"], Float[np.ndarray, "3"], float]
 """Where the eye is, the point that it looks at (world, metres), and the vertical field of view (rad)."""
 
 
-def write_html(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_html(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write a gathered scene as a self-contained page, whole or not at all.
 
     Raises:
@@ -54,7 +54,6 @@ def write_html(scene: ExportScene, path: Path, progress: Progress | None = None)
         UnavailableError: when viser's client is not installed with it.
         Cancelled: when asked to stop.
     """
-    progress = progress or Progress()
     with tempfile.TemporaryDirectory() as folder:
         model = Path(folder) / "scene.glb"
         write_gathered(_seen_from_outside(scene), model, progress.part(0.0, 0.5))

@@ -92,6 +92,7 @@ def build(
     """
     from diorama_core.perception.inputs import arrays as input_arrays
     from diorama_core.perception.inputs import read_inputs
+    from diorama_core.progress import Progress
 
     read = read_inputs(
         input_arrays.photo_file(photo),
@@ -111,7 +112,7 @@ def build(
         warn(warning)
     opened, name = _opened(library)
     choose = _choice(inputs, opened, profile, recipe, stages, networks)
-    return _built(inputs, warnings, opened, name, choose, output, progress)
+    return _built(inputs, warnings, opened, name, choose, output, progress or Progress())
 
 
 def _at_height(inputs: Inputs, height_m: float | None) -> Inputs:
@@ -243,7 +244,7 @@ def _built(
     library_name: str | None,
     choose: ChooseStages,
     output: Path | str | None,
-    progress: Progress | None,
+    progress: Progress,
 ) -> Reconstruction:
     """The scene of `inputs`, built in a project folder or, without one, in memory.
 

@@ -77,6 +77,7 @@ def export(
         Cancelled: on request; an older file at `path` stays as it was.
     """
     from diorama_core.export import export_scene
+    from diorama_core.progress import Progress
 
     path, project, inputs = Path(path), reconstruction.project, reconstruction.inputs
     return export_scene(
@@ -89,7 +90,7 @@ def export(
         photo=None if inputs is None else inputs.photo.rgb,
         name=None if project is None else project.name,
         provenance=None if project is None else project.info(),
-        progress=progress,
+        progress=progress or Progress(),
     )
 
 

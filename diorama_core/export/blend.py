@@ -15,7 +15,7 @@ from diorama_core.export.blender import run_in_blender
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.gltf import write_gathered
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 EVEN_SHARE = 0.9
 """Share of the light from all sides that comes before bounces; by it pictures of three rooms differ least from ours."""
@@ -23,7 +23,7 @@ SEEK_TABLE_END = bytes.fromhex("b1ea928f")
 """Last four bytes of the seekable Zstandard files that Blender writes."""
 
 
-def write_blend(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_blend(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write a `.blend` with everything in it, whole or not at all.
 
     Objects are parented to their supporters and keep their custom properties; the photo lies behind the camera's view.
@@ -33,7 +33,6 @@ def write_blend(scene: ExportScene, path: Path, progress: Progress | None = None
         UnavailableError: Blender is missing or fails.
         Cancelled: when asked to stop; what was there stays.
     """
-    progress = progress or Progress()
     worker = Path(__file__).with_name("blend_worker.py")
     with whole_file(Path(path)) as temporary, tempfile.TemporaryDirectory() as name:
         folder = Path(name)

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from diorama_core.errors import UnavailableError
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 PYTHON_VARIABLE = "DIORAMA_BLENDER_PYTHON"
 INSTALL = (
@@ -58,7 +58,7 @@ def missing_blender() -> str:
 
 
 def run_in_blender(
-    worker: Path, job: Mapping[str, Any], *, name: str, progress: Progress | None = None, timeout_s: float = 1800.0
+    worker: Path, job: Mapping[str, Any], *, name: str, progress: Progress = SILENT, timeout_s: float = 1800.0
 ) -> None:
     """Run one job in Blender's Python.
 
@@ -73,7 +73,7 @@ def run_in_blender(
         UnavailableError: Blender is missing, fails or takes too long.
         Cancelled: when asked to stop.
     """
-    progress, python = progress or Progress(), blender_python()
+    python = blender_python()
     with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile("w+") as errors:
         file = Path(folder) / "job.json"
         file.write_text(json.dumps(dict(job)), encoding="utf-8")

@@ -18,7 +18,7 @@ from diorama_core.export.gathering import ExportOptions
 from diorama_core.export.gltf import write_glb
 from diorama_core.export.pictures import Picture
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Architecture, Camera, Scene
 
 WINDOW_W_PER_M2 = 45.0
@@ -73,7 +73,7 @@ def cycles_picture(
     samples: int = 64,
     seed: int = 0,
     timeout_s: float = 1800.0,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> UInt8[np.ndarray, "h w 3"]:
     """A path-traced picture of a scene; a minute or more on a processor.
 
@@ -115,7 +115,7 @@ def cycles_radiance(
     samples: int = 256,
     seed: int = 0,
     timeout_s: float = 7200.0,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Float[np.ndarray, "h w 3"]:
     """Light that reaches the scene's camera by day: path-traced, linear, before any exposure; minutes on a processor.
 
@@ -175,7 +175,7 @@ def _job(
     }  # fmt: skip
 
 
-def _traced(job: Mapping[str, Any], progress: Progress | None, timeout_s: float) -> None:
+def _traced(job: Mapping[str, Any], progress: Progress, timeout_s: float) -> None:
     worker = Path(__file__).with_name("cycles_worker.py")
     run_in_blender(worker, job, name="Cycles", progress=progress, timeout_s=timeout_s)
 

@@ -11,11 +11,11 @@ from jaxtyping import Float32
 from diorama_core.errors import ExportError
 from diorama_core.export.files import write_whole
 from diorama_core.export.gathering import ExportScene
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.panorama import panorama
 
 
-def environment_of(gathered: ExportScene, progress: Progress | None = None) -> Float32[np.ndarray, "h w 3"]:
+def environment_of(gathered: ExportScene, progress: Progress = SILENT) -> Float32[np.ndarray, "h w 3"]:
     """Linear radiance that comes to the middle of the room (`render.panorama`), in the colour of its light.
 
     Raises:
@@ -24,7 +24,7 @@ def environment_of(gathered: ExportScene, progress: Progress | None = None) -> F
     return panorama(gathered.scene, gathered.library, textures=gathered.textures, progress=progress)
 
 
-def write_hdr(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_hdr(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write a Radiance picture, whole or not at all.
 
     Raises:

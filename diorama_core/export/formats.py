@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast, runtime_checkable
 
 from diorama_core.errors import ExportError, UnavailableError
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 if TYPE_CHECKING:
     from diorama_core.export.gathering import ExportOptions, ExportScene
@@ -206,7 +206,7 @@ def export_scene(
     photo: Picture | None = None,
     name: str | None = None,
     provenance: Mapping[str, Any] | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> ExportScene:
     """Write a scene in one of `FORMATS`, whole or not at all, and return what was written.
 
@@ -230,7 +230,7 @@ def export_scene(
     """
     from diorama_core.export.gathering import EVERYTHING, gather
 
-    path, progress = Path(path), progress or Progress()
+    path = Path(path)
     chosen = format_name if isinstance(format_name, Format) else format_named(format_name)
     if path.suffix.lower() not in chosen.suffixes:
         endings = " or ".join(chosen.suffixes)

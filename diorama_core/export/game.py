@@ -26,7 +26,7 @@ from diorama_core.export.lights import MainLight
 from diorama_core.export.palette import GameMaterials
 from diorama_core.export.unwrapping import unwrapped
 from diorama_core.library.simplify import LARGEST_ERRORS, simplified_triangles
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Material, Surface
 
 COVERAGES = (0.5, 0.25, 0.0)
@@ -49,13 +49,13 @@ Levels = Sequence[Sequence[Surface]]
 UNSEEN = Material("collider", (0.2, 0.6, 0.9), alpha=0.3)
 
 
-def write_game(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_game(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write the GLB, whole or not at all; raises `ExportError`."""
     if gathered.options.light_uv and gathered.options.compression == "draco":
         raise ExportError(
             f"{path}: Draco holds one set of texture coordinates; leave out its compression or --light-uv"
         )
-    document = _Builder(gathered, progress or Progress()).built()
+    document = _Builder(gathered, progress).built()
     with whole_file(path) as temporary, temporary.open("wb") as file:
         document.write(file)
 

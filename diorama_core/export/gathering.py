@@ -28,7 +28,7 @@ from diorama_core.io.text import clean_text
 from diorama_core.library.opening import OpenedShapes, articulation_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import relative_scale
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Material, PartsSource, Surface, shape_surfaces
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.support import ancestors, top_down
@@ -226,7 +226,7 @@ def gather(
     photo: Picture | None = None,
     name: str = "scene",
     provenance: Mapping[str, Any] | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> ExportScene:
     """Reduce a scene to what is written.
 
@@ -256,8 +256,7 @@ def gather(
     swings = door_swings(order, lambda i: articulation_of(library, i)) if options.joints else {}
     objects = []
     for number, item in enumerate(order):
-        if progress is not None:
-            progress.report(number / len(order), f"reading {item.label}")
+        progress.report(number / len(order), f"reading {item.label}")
         scale = relative_scale(item.pose.scale)
         paint = (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale, item.open_share)
         if paint not in painted:

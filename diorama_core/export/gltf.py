@@ -31,7 +31,7 @@ from diorama_core.export.gltf_document import GltfDocument
 from diorama_core.export.lights import ExportLight
 from diorama_core.export.names import unique_name
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.schema import scene_to_json
 from diorama_core.scene.types import Camera, Scene
 
@@ -84,9 +84,9 @@ def glb_bytes(
     return _document(gather(scene, library, textures=textures, options=options), Progress()).glb()
 
 
-def write_gathered(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_gathered(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write a gathered scene as a GLB file, whole or not at all; raises `ExportError`."""
-    document = _document(gathered, progress or Progress())
+    document = _document(gathered, progress)
     with whole_file(path) as temporary, temporary.open("wb") as file:
         document.write(file)
 

@@ -19,7 +19,7 @@ from diorama_core.geometry.planes import signed_area
 from diorama_core.geometry.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.library.taxonomy import column
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Material
 from diorama_core.scene.types import HomeRoom, Plane
 
@@ -31,14 +31,14 @@ THROUGH_M = 0.05
 """Openings reach this far through their wall on both sides."""
 
 
-def write_ifc(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_ifc(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write the model, whole or not at all.
 
     Raises:
         ExportError: when it cannot be written.
         Cancelled: when asked to stop; what was there stays.
     """
-    builder = _Builder(scene, progress or Progress())
+    builder = _Builder(scene, progress)
     with whole_file(Path(path)) as temporary, temporary.open("w", encoding="ascii", newline="\n") as stream:
         stream.writelines(builder.built().lines())
 

@@ -125,7 +125,7 @@ def grouped(links: tuple[Link, ...]) -> dict[str, tuple[Link, ...]]:
 
 
 def write_linked(
-    gathered: ExportScene, path: Path, progress: Progress | None, kind: str, describe: Callable[..., Mapping[str, str]]
+    gathered: ExportScene, path: Path, progress: Progress, kind: str, describe: Callable[..., Mapping[str, str]]
 ) -> None:
     """Write the files that `describe` makes and the meshes they name: side by side, or everything as one `.zip`.
 
@@ -140,7 +140,6 @@ def write_linked(
     Raises:
         ExportError: when it cannot be written.
     """
-    progress = progress or Progress()
     progress.report(0.0, "preparing colliders")
     physical = physical_scene(gathered)
     links = links_of(gathered, physical)

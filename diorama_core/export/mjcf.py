@@ -24,7 +24,7 @@ from diorama_core.export.physics import FLOOR_FRICTION, Inertia
 from diorama_core.export.pictures import OncePerPicture, png_bytes
 from diorama_core.export.wavefront import obj_file
 from diorama_core.export.xml_values import numbers, srgb_rgba
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.lighting import MEAN_IRRADIANCE
 from diorama_core.scene.types import Camera
 
@@ -36,13 +36,12 @@ SCREEN_GAMMA = 2.2
 """MuJoCo multiplies colours as screens have them by light, so its lights are powers of what falls."""
 
 
-def write_mjcf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_mjcf(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write a MuJoCo model: `.xml` with a folder beside it, or everything as one `.zip`.
 
     Raises:
         ExportError: when it cannot be written.
     """
-    progress = progress or Progress()
     progress.report(0.0, "preparing colliders")
     physical = physical_scene(gathered)
     main, folder = f"{Path(path).stem}.xml", companion_folder(path, "mjcf")

@@ -15,10 +15,10 @@ from diorama_core.export.files import FAST_DEFLATE, add_entry, companion_folder,
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.wavefront import MaterialFile, ObjText
 from diorama_core.export.world_meshes import Y_UP, world_meshes
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 
-def write_obj(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_obj(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write `path` (.zip with everything in it, or .obj with a folder beside it), whole or not at all.
 
     Raises:
@@ -61,7 +61,7 @@ def _write_geometry(
     write: Callable[[bytes], object],
     material_file: str,
     materials: MaterialFile,
-    progress: Progress | None,
+    progress: Progress,
 ) -> None:
     write(f"# Diorama: metres, +Y up\nmtllib {material_file}\n".encode())
     text = ObjText()

@@ -20,7 +20,7 @@ from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.world_meshes import world_meshes
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Surface
 
 PICTURE_EDGE_M = 0.05
@@ -33,7 +33,7 @@ VERTEX = np.dtype([("place", "<f4", 3), ("normal", "<f4", 3), ("colour", "u1", 4
 FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
 
 
-def write_ply(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_ply(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write one mesh, whole or not at all.
 
     Raises:
@@ -50,7 +50,7 @@ def write_ply(scene: ExportScene, path: Path, progress: Progress | None = None) 
                     stream.write(block)
 
 
-def _write_parts(scene: ExportScene, vertices: BinaryIO, faces: BinaryIO, progress: Progress | None) -> tuple[int, int]:
+def _write_parts(scene: ExportScene, vertices: BinaryIO, faces: BinaryIO, progress: Progress) -> tuple[int, int]:
     """Vertices and faces one after the other: the header names both counts before either."""
     vertex_count = face_count = 0
     for mesh in world_meshes(scene, progress):

@@ -36,7 +36,7 @@ from diorama_core.export.regions import Region, regions_of
 from diorama_core.export.sdf import sdf_files
 from diorama_core.export.urdf import urdf_files
 from diorama_core.export.xml_values import numbers
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 FOLDER = "files"
 MAX_GRASP_M = 0.08
@@ -65,11 +65,10 @@ Graspable: free to move, at most {lift} kg, smallest side at most {grasp} m. A r
 """
 
 
-def write_robot(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_robot(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write the zip, whole or not at all; raises `ExportError`."""
     from diorama_core.export.usd import layer_files
 
-    progress = progress or Progress()
     progress.report(0.0, "preparing colliders")
     physical, radius = physical_scene(gathered), gathered.options.robot_radius_m
     links, bodies = links_of(gathered, physical), outlined(physical)

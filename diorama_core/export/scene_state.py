@@ -26,7 +26,7 @@ from diorama_core.export.gltf_document import GltfDocument, TextureFiles
 from diorama_core.export.pictures import OncePerPicture, texture_file
 from diorama_core.geometry.wall_lines import DrawnWall, Opening, wall_lines
 from diorama_core.library.record import record_of
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Surface
 from diorama_core.scene.types import Plane
 
@@ -37,14 +37,14 @@ R_SHAPE_FILE = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """The frame of the model's file (glTF: +Y up, +Z front) in the shape's (+Z up, +X front)."""
 
 
-def write_scene_state(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_scene_state(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write the state (.json), or the state with its models (.zip), whole or not at all.
 
     Raises:
         ExportError: when it cannot be written.
         Cancelled: when asked to stop; what was there stays.
     """
-    path, progress = Path(path), progress or Progress()
+    path = Path(path)
     text = json.dumps(scene_state(scene), indent=1, allow_nan=False)
     if path.suffix.lower() != ".zip":
         progress.check()

@@ -12,7 +12,7 @@ import numpy as np
 
 from diorama_core.export.files import whole_file, write_whole
 from diorama_core.export.gathering import ExportObject, ExportScene
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 COLUMNS = (
     *("id", "name", "kind", "width_m", "depth_m", "height_m", "x_m", "y_m", "bottom_m", "turned_deg"),
@@ -26,13 +26,12 @@ PICTURE_PX, WIDEST = 96, 40
 """Side of a picture in XLSX; the widest column, in characters."""
 
 
-def write_csv(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_csv(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write a row for each object by kind and id, whole or not at all; raises `ExportError`.
 
     Width runs along an object's front. The file is UTF-8 with the mark by which spreadsheets know that.
     """
-    if progress is not None:
-        progress.report(0.0, "writing the furniture list")
+    progress.report(0.0, "writing the furniture list")
     with whole_file(path) as temporary, temporary.open("w", encoding="utf-8-sig", newline="") as file:
         rows = csv.writer(file)
         rows.writerow(COLUMNS)
@@ -40,13 +39,13 @@ def write_csv(gathered: ExportScene, path: Path, progress: Progress | None = Non
             rows.writerow(_as_text(cell) for cell in _row(gathered, node))
 
 
-def write_xlsx(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_xlsx(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write the same table as a workbook, with a picture of each object; raises `ExportError`, `Cancelled`."""
     import xlsxwriter
 
     from diorama_core.render.thumbnails import thumbnail
 
-    progress, nodes, content = progress or Progress(), _listed(gathered), io.BytesIO()
+    nodes, content = _listed(gathered), io.BytesIO()
     book = xlsxwriter.Workbook(content, {"in_memory": True})
     book.set_properties({"created": datetime(1980, 1, 1)})  # the same scene gives the same bytes
     sheet, metres, bold = book.add_worksheet("Furniture"), book.add_format({"num_format": "0.000"}), book.add_format()

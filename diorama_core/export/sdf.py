@@ -18,7 +18,7 @@ from diorama_core.export.lights import ExportLight, MainLight
 from diorama_core.export.links import Link, collider_file, grouped, visual_file, write_linked
 from diorama_core.export.physics import FLOOR_FRICTION
 from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 VERSION = "1.9"
 ROOM = "room"
@@ -28,7 +28,7 @@ FULL_LIGHT_LUX = 1000.0
 """Illuminance by a directional light of full intensity."""
 
 
-def write_sdf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_sdf(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write an SDF world: `.sdf` with a folder beside it, or everything as one `.zip`.
 
     Raises:

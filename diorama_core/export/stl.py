@@ -11,13 +11,13 @@ from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.world_meshes import world_meshes
 from diorama_core.geometry.vectors import unit
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 MM_PER_M = 1000.0
 TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def write_stl(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_stl(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write all triangles, whole or not at all.
 
     Raises:

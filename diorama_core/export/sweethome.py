@@ -26,7 +26,7 @@ from diorama_core.geometry.rooms import storeys_of
 from diorama_core.geometry.vectors import unit
 from diorama_core.geometry.wall_lines import DrawnWall, wall_lines
 from diorama_core.io.srgb import linear_to_srgb
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Camera, HomeRoom, Plane
 
 CM_PER_M = 100.0
@@ -39,14 +39,13 @@ SLACK_M = 0.02
 """Doors reach this far through their wall, so that Sweet Home 3D cuts it."""
 
 
-def write_sweet_home(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_sweet_home(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write the home, whole or not at all.
 
     Raises:
         ExportError: when it cannot be written.
         Cancelled: when asked to stop; what was there stays.
     """
-    progress = progress or Progress()
     with whole_file(Path(path)) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         models: dict[str, str] = {}
         for number, (key, name, content) in enumerate(_model_files(scene)):

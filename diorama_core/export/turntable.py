@@ -16,7 +16,7 @@ from PIL import Image
 from diorama_core.errors import ExportError, UnavailableError
 from diorama_core.export.files import whole_file
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.lighting import Lighting, studio
 from diorama_core.render.picture import ORBIT_ELEVATION_RAD, looking_along, picture
 from diorama_core.scene.types import Camera, Intrinsics, Scene
@@ -36,7 +36,7 @@ def write_turntable(
     size: tuple[int, int] = SIZE,
     frames: int = FRAMES,
     textures: Mapping[str, UInt8[np.ndarray, "_ _ _"]] | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> None:
     """Write a turntable video that loops seamlessly.
 
@@ -54,7 +54,7 @@ def write_turntable(
         UnavailableError: PyAV is missing for an MP4.
         Cancelled: when asked to stop.
     """
-    path, progress = Path(path), progress or Progress()
+    path = Path(path)
     writers: dict[str, Callable[[Iterator[Frame], Path], None]] = {".mp4": _write_mp4, ".gif": _write_gif}
     write = writers.get(path.suffix.lower())
     if write is None:

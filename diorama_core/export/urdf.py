@@ -20,14 +20,14 @@ from diorama_core.export.gathering import ExportMesh, ExportScene
 from diorama_core.export.links import Link, collider_file, grouped, visual_file, write_linked
 from diorama_core.export.physics import Inertia
 from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 WORLD, POSES = "world", "poses.json"
 EFFORT_N, VELOCITY = "50", "2"
 _TYPES = {"fixed": "fixed", "hinge": "revolute", "slide": "prismatic", "swivel": "continuous"}
 
 
-def write_urdf(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_urdf(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write a URDF: `.urdf` with a folder beside it, or everything as one `.zip`.
 
     Raises:

@@ -32,26 +32,25 @@ from diorama_core.export.usd_materials import (
 )
 from diorama_core.export.usd_physics import add_physics, limb_path, object_path, plane_path
 from diorama_core.export.usd_values import note, place
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.schema import scene_to_json
 
 ROOT = "/Scene"
 PROTOTYPES = "/Prototypes"
 
 
-def write_usda(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_usda(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write USD text, with pictures in a folder beside it; raises `ExportError`."""
-    _write_layer(gathered, path, progress or Progress())
+    _write_layer(gathered, path, progress)
 
 
-def write_usdc(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_usdc(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write binary USD, with pictures in a folder beside it; raises `ExportError`."""
-    _write_layer(gathered, path, progress or Progress())
+    _write_layer(gathered, path, progress)
 
 
-def write_usdz(gathered: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_usdz(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write one package: +Y up, binary, aligned and uncompressed, as AR Quick Look asks; raises `ExportError`."""
-    progress = progress or Progress()
     with _told_as_export_error(path), tempfile.TemporaryDirectory() as folder:
         stage, pictures = build_stage(gathered, "textures", progress, up_axis="Y")
         layer = Path(folder) / "scene.usdc"

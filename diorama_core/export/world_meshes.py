@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from diorama_core.export.gathering import ExportScene
 from diorama_core.geometry.vectors import unit
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Surface
 
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -27,7 +27,7 @@ class WorldMesh:
 
 
 def world_meshes(
-    scene: ExportScene, progress: Progress | None = None, *, R: Float[np.ndarray, "3 3"] | None = None
+    scene: ExportScene, progress: Progress = SILENT, *, R: Float[np.ndarray, "3 3"] | None = None
 ) -> Iterator[WorldMesh]:
     """Planes, then objects, one at a time, so that only one is in memory.
 
@@ -36,7 +36,6 @@ def world_meshes(
         progress: Where objects are counted and cancelling is noticed.
         R: Turns the world into the file's frame; None keeps +Z up.
     """
-    progress = progress or Progress()
     total = max(1, len(scene.planes) + len(scene.objects))
     for number, plane in enumerate(scene.planes):
         progress.report(number / total, f"writing {plane.name}")

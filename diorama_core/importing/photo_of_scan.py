@@ -26,7 +26,7 @@ from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Pose, Scene, SceneObject, yaw_rotation
 
@@ -37,7 +37,7 @@ def with_photo_of_scan(
     library: ShapeLibrary,
     choose: Callable[[Inputs], Stages],
     layout: Callable[[frozenset[str]], LayoutStage],
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Opened:
     """A scanned room with what a photo shows; the photo is the scene's own from now on.
 
@@ -57,7 +57,6 @@ def with_photo_of_scan(
         Cancelled: on request.
         DioramaError: when a stage cannot do its work.
     """
-    progress = progress or Progress()
     name = inputs.photo.name
     scene = moved_to_room(opened.scene, _to_axes(opened.scene))
     artefacts = evaluate(

@@ -19,7 +19,7 @@ from diorama_core.library.catalogue import base_id
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.store import StoredLibrary, open_library, stored_libraries
 from diorama_core.library.user_library import OWN
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.project.storage import OWN_SHAPES
 
 
@@ -38,7 +38,7 @@ def import_scene(
     *,
     library_name: str | None = None,
     unit_m: float | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Imported:
     """Open a file as a scene.
 
@@ -55,7 +55,6 @@ def import_scene(
         UnavailableError: an optional library is missing.
         LibraryError: no shape library of that name, or models cannot be kept.
     """
-    progress = progress or Progress()
     with _read(path, progress, unit_m) as (place, content):
         if isinstance(content, MarkedFile):
             return _imported_mark(place, shapes, content, library_name, progress)

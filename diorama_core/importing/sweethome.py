@@ -32,7 +32,7 @@ from diorama_core.library.ingest.models import SUFFIXES, read_model
 from diorama_core.library.ingest.names import named_kind
 from diorama_core.library.kinds import is_possible
 from diorama_core.library.taxonomy import UNKNOWN
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.schema import MAX_ITEMS
 
 M_PER_CM = 0.01
@@ -47,7 +47,7 @@ MAX_FILES = 5000
 """That are taken out of the archive: models, and what lies beside them in it."""
 
 
-def parts_of_sweet_home(path: Path, progress: Progress | None = None) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+def parts_of_sweet_home(path: Path, progress: Progress = SILENT) -> tuple[tuple[Part, ...], tuple[str, ...]]:
     """Objects, walls and floors of a home, and notes about what is read otherwise than it is drawn.
 
     Args:
@@ -58,7 +58,6 @@ def parts_of_sweet_home(path: Path, progress: Progress | None = None) -> tuple[t
         InputError: it cannot be read, or holds more than a scene does.
         Cancelled: on request.
     """
-    progress = progress or Progress()
     try:
         with zipfile.ZipFile(path) as archive, tempfile.TemporaryDirectory() as folder:
             home = _home(archive, path)

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import IO, Any, ParamSpec, TypeVar
 
 from diorama_core.errors import DioramaError, InputError
-from diorama_core.progress import Progress, ProgressEvent
+from diorama_core.progress import SILENT, Progress, ProgressEvent
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -106,7 +106,7 @@ class LimitedProcess:
             InputError: the limit of memory or time was reached, or the process crashed.
             DioramaError: what the function raised.
         """
-        return self._asked(name, (function, args, kwargs), None)
+        return self._asked(name, (function, args, kwargs), SILENT)
 
     def work(self, name: str, function: Callable[..., R], *args: Any, progress: Progress) -> R:
         """`function(*args, progress)` in the process, for long work that reports its progress.
@@ -125,7 +125,7 @@ class LimitedProcess:
         """
         return self._asked(name, (function, args, None), progress)
 
-    def _asked(self, name: str, task: tuple[Any, Any, Any], progress: Progress | None) -> Any:
+    def _asked(self, name: str, task: tuple[Any, Any, Any], progress: Progress) -> Any:
         with self._lock:
             messages = self._started()
             try:
@@ -141,7 +141,7 @@ class LimitedProcess:
             return value
         raise value if isinstance(value, DioramaError) else InputError(f"{name}: {value or _TOO_MUCH}")
 
-    def _answer_from(self, messages: _Messages, name: str, progress: Progress | None) -> tuple[bool, Any]:
+    def _answer_from(self, messages: _Messages, name: str, progress: Progress) -> tuple[bool, Any]:
         """The last message; the ones before it are steps of progress."""
         quiet, used = 0.0, self._cpu_time()
         while True:
@@ -156,10 +156,8 @@ class LimitedProcess:
                 if good is not None:
                     return good, value
                 quiet = 0.0
-                if progress is not None:
-                    progress.report(*value)
-            if progress is not None:
-                progress.check()
+                progress.report(*value)
+            progress.check()
 
     def _cpu_time(self) -> tuple[float, bool] | None:
         return None if self._process is None else cpu_time(self._process.pid)

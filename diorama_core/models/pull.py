@@ -18,7 +18,7 @@ from typing import Any
 from diorama_core.errors import Cancelled, InputError, UnavailableError
 from diorama_core.models.network import ModelFile, Network
 from diorama_core.models.store import ModelStore, how_to_get
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 SPARE_BYTES = 200_000_000
 """Left free on the disk after a pull."""
@@ -30,7 +30,7 @@ Accept = Callable[[Sequence[Network]], bool]
 
 
 def pull(
-    store: ModelStore, networks: Sequence[Network], *, accept: Accept, progress: Progress | None = None
+    store: ModelStore, networks: Sequence[Network], *, accept: Accept, progress: Progress = SILENT
 ) -> tuple[str, ...]:
     """Fetch what is missing of some networks.
 
@@ -48,7 +48,6 @@ def pull(
         InputError: the licence was not accepted, or a network cannot be pulled.
         Cancelled: on request.
     """
-    progress = progress or Progress()
     wanted = [(n, f) for n in networks for f in store.missing(n)]
     if not wanted:
         return ()

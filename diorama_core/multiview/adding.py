@@ -47,7 +47,7 @@ from diorama_core.multiview.rooms import (
 from diorama_core.multiview.settings import SETTINGS
 from diorama_core.pipeline.given_stages import GivenRoom
 from diorama_core.pipeline.stages import Stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.edits import fresh_id, set_metrics
 from diorama_core.scene.support import check_scene
@@ -81,7 +81,7 @@ def with_photo(
     library: ShapeLibrary,
     choose: Callable[[Inputs], Stages],
     layout: Callable[[frozenset[str]], LayoutStage],
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     *,
     measured_room: bool = False,
 ) -> AddedPhoto:
@@ -109,7 +109,6 @@ def with_photo(
     """
     if new.camera is None:
         raise InputError(f"{new.name}: its camera is not known yet")
-    progress = progress or Progress()
     read = read_photo(PosedInputs(new.inputs, new.camera), choose(new.inputs), progress.part(0.0, 0.15))
     if not read.objects:
         raise InputError(f"nothing is marked in {new.name} and nothing was found; draw a box around each object first")

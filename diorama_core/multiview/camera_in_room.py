@@ -22,7 +22,7 @@ from diorama_core.geometry.projection import box_iou, cuboid_corners, visible_bo
 from diorama_core.library.taxonomy import UNKNOWN, broad
 from diorama_core.multiview.joint_fit import NEAREST_M
 from diorama_core.perception.metrology.box_observations import BoxObservations
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Camera, yaw_rotation
 
 
@@ -98,7 +98,7 @@ def camera_in_room(
     floor: Polygon,
     estimate: CameraEstimate,
     boxes: BoxObservations,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     *,
     focal_known: bool = False,
 ) -> FoundCamera | None:
@@ -112,7 +112,6 @@ def camera_in_room(
         progress: reports and cancellation.
         focal_known: whether the focal length was given.
     """
-    progress = progress or Progress()
     if min(len(measured), len(boxes)) < SETTINGS.min_same:
         return None
     search = _Search(measured, boxes, estimate.best, focal_known)

@@ -23,7 +23,7 @@ from PIL import Image
 
 from diorama_core.errors import InputError, UnavailableError
 from diorama_core.multiview.posed_photos import MAX_PHOTOS, Poses, read_poses
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 LONGEST_PX = 1600
 """Photos are matched at most at this size."""
@@ -43,7 +43,7 @@ class UnposedPhoto:
     """Focal length, where it is known."""
 
 
-def find_poses(photos: Sequence[UnposedPhoto], progress: Progress | None = None) -> Poses:
+def find_poses(photos: Sequence[UnposedPhoto], progress: Progress = SILENT) -> Poses:
     """Cameras of photos, in a world without metres or gravity; a note names the photos that do not join.
 
     Photos of one size without a focal length are taken to be of one camera.
@@ -57,7 +57,6 @@ def find_poses(photos: Sequence[UnposedPhoto], progress: Progress | None = None)
         InputError: fewer than two photos join.
         Cancelled: on request.
     """
-    progress = progress or Progress()
     colmap = _pycolmap()
     if not 2 <= len(photos) <= MAX_PHOTOS:
         raise InputError(f"{len(photos)} photos; cameras are found for 2 to {MAX_PHOTOS} photos of one room")
@@ -97,7 +96,7 @@ def _left_out(names: Sequence[str], groups: Sequence[frozenset[str]]) -> tuple[s
 
 
 def common_points(
-    new: UnposedPhoto, photos: Sequence[UnposedPhoto], progress: Progress | None = None
+    new: UnposedPhoto, photos: Sequence[UnposedPhoto], progress: Progress = SILENT
 ) -> tuple[Float[np.ndarray, "_ 4"], ...]:
     """What a photo has in common with others: pixels of the same places, as far as epipolar geometry verifies them.
 
@@ -113,7 +112,6 @@ def common_points(
         UnavailableError: pycolmap is not installed.
         Cancelled: on request.
     """
-    progress = progress or Progress()
     colmap = _pycolmap()
     points_of_photos = {p.name: np.zeros((0, 4)) for p in photos}
     with tempfile.TemporaryDirectory(prefix="diorama-photos-") as temporary:

@@ -15,7 +15,7 @@ from diorama_core.library.taxonomy import PORTABLE, Category, broad
 from diorama_core.multiview.joint_fit import JointCuboid, PosedBoxes, fit_jointly, meeting_point
 from diorama_core.multiview.settings import SETTINGS
 from diorama_core.perception.metrology.placement import FLOOR
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 FARTHER = tuple(float(f) for f in np.geomspace(0.6, 1.67, 9))
 FARTHER_PENALTY = tuple(float(np.exp(-0.5 * (np.log(f) / 0.3) ** 2)) for f in FARTHER)
@@ -68,13 +68,12 @@ class Track:
         return [(photos[photo].boxes, box) for photo, box in self.fitted]
 
 
-def joined_objects(photos: Sequence[RoomPhoto], progress: Progress | None = None) -> tuple[Track, ...]:
+def joined_objects(photos: Sequence[RoomPhoto], progress: Progress = SILENT) -> tuple[Track, ...]:
     """The room's objects. Every box is of one of them; an object has one box at most in a photo.
 
     Photo by photo, known objects claim the boxes of their kind that their cuboids cover best; what is left is new. Then
     every photo's boxes are claimed again by cuboids that were fitted to all other photos.
     """
-    progress = progress or Progress()
     joining = _Joining(photos)
     tracks: list[Track] = []
     steps = len(photos) * (1 + SETTINGS.rounds)

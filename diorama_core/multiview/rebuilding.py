@@ -14,7 +14,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.multiview.adding import with_photo
 from diorama_core.multiview.registration import photos_of_scene
 from diorama_core.pipeline.stages import Stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Camera, Scene
 
@@ -40,7 +40,7 @@ def with_photos_again(
     library: ShapeLibrary,
     choose: Callable[[Inputs], Stages],
     layout: Callable[[frozenset[str]], LayoutStage],
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Rebuilt:
     """The new scene with everything that the other photos show.
 
@@ -58,7 +58,6 @@ def with_photos_again(
         Cancelled: on request.
         DioramaError: when a stage cannot do its work.
     """
-    progress = progress or Progress()
     done: list[FurtherPhoto] = []
     textures: dict[str, UInt8[np.ndarray, "_ _ 3"]] = {}
     left_out: list[str] = []

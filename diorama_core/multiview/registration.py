@@ -23,7 +23,7 @@ from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.multiview.found_poses import LIKELY_FOV_RAD, UnposedPhoto, common_points
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.raycast import PinholeView
 from diorama_core.render.world import scene_world
 from diorama_core.scene.types import Camera, Intrinsics, Scene
@@ -83,7 +83,7 @@ class CommonPoints:
 
 
 def registered_camera(
-    new: UnposedPhoto, known: Sequence[PlacedPhoto], depth_along: DepthAlong, progress: Progress | None = None
+    new: UnposedPhoto, known: Sequence[PlacedPhoto], depth_along: DepthAlong, progress: Progress = SILENT
 ) -> Camera:
     """The camera of a new photo, in the room.
 
@@ -249,7 +249,7 @@ def camera_of(
     known: Sequence[FurtherPhoto],
     scene: Scene,
     library: ShapeLibrary,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Camera:
     """The camera of a photo in a scene.
 

@@ -56,7 +56,7 @@ from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.edits import set_metrics
 from diorama_core.scene.support import check_scene
@@ -77,7 +77,7 @@ def in_room(
     *,
     metric: bool,
     up: Float[np.ndarray, "3"] | None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> tuple[tuple[PosedInputs, ...], RoomAlignment]:
     """Photos whose cameras are in some world of their own, with their cameras in the room.
 
@@ -88,7 +88,6 @@ def in_room(
         up: direction against gravity there, where it is known.
         progress: reports and cancellation.
     """
-    progress = progress or Progress()
     readings = []
     for number, photo in enumerate(photos):
         given = replace(photo.inputs, intrinsics=photo.camera.intrinsics)
@@ -143,7 +142,7 @@ def build_room(
     library: ShapeLibrary,
     choose: Callable[[Inputs], Stages],
     layout: LayoutStage,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> JoinedRoom:
     """Build one scene of several photos of a room.
 
@@ -161,7 +160,6 @@ def build_room(
     """
     if not photos:
         raise InputError("there is no photo with a known camera")
-    progress = progress or Progress()
     read = []
     for number, photo in enumerate(photos):
         part = progress.part(0.2 * number / len(photos), 0.2 * (number + 1) / len(photos))
@@ -184,7 +182,7 @@ def joined_scene(
     rooms: Sequence[GivenRoom | None],
     library: ShapeLibrary,
     layout: LayoutStage,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> JoinedRoom:
     """One scene of photos that were read, whose objects and whose room are known.
 
@@ -197,7 +195,7 @@ def joined_scene(
         layout: the optimiser of the whole room.
         progress: reports and cancellation.
     """
-    progress, single = progress or Progress(), len(read) == 1
+    single = len(read) == 1
     best = [max(t.fitted, key=lambda b: (shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
     used = sorted({0, *best})
     built: dict[int, Built] = {}
@@ -316,7 +314,7 @@ def built_alone(
     return build_scene(read.inputs, library, stages=stages, progress=progress, plane_pictures=plane_pictures)
 
 
-def room_alone(read: ReadPhoto, index: int, tracks: Sequence[Track], progress: Progress | None = None) -> Architecture:
+def room_alone(read: ReadPhoto, index: int, tracks: Sequence[Track], progress: Progress = SILENT) -> Architecture:
     """The room as one photo shows it around the joint cuboids, in the room's frame.
 
     Args:

@@ -44,7 +44,7 @@ from diorama_core.pipeline.given_stages import GivenRoom
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Architecture, Plane, Scene
 
@@ -88,7 +88,7 @@ def build_sphere(
     library: ShapeLibrary,
     choose: Callable[[Inputs], Stages],
     layout: LayoutStage,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     *,
     camera_height_m: float | None = None,
 ) -> SphereScene:
@@ -107,7 +107,6 @@ def build_sphere(
         Cancelled: on request.
         DioramaError: when a stage cannot do its work.
     """
-    progress = progress or Progress()
     progress.report(0.0, "reading the room's directions all round")
     R = room_axes(sphere_lines(photo.rgb))
     progress.report(0.03, "looking for the room's borders all round")

@@ -20,7 +20,7 @@ from diorama_core.models.network import Network, Role
 from diorama_core.models.runtime import SHARED_SESSIONS
 from diorama_core.models.store import ModelStore
 from diorama_core.pipeline import network_stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Measurement:
         return f"{self.name} {self.value:.3g} (expected {expected})"
 
 
-def check_networks(store: ModelStore, known: Inputs, progress: Progress | None = None) -> tuple[NetworkCheck, ...]:
+def check_networks(store: ModelStore, known: Inputs, progress: Progress = SILENT) -> tuple[NetworkCheck, ...]:
     """Try every network that is on this machine.
 
     Args:
@@ -62,7 +62,6 @@ def check_networks(store: ModelStore, known: Inputs, progress: Progress | None =
         known: a photo of a room with boxes and intrinsics that are known to be right.
         progress: reported for each network; honours cancelling.
     """
-    progress = progress or Progress()
     present = [n for n in NETWORKS if store.has(n)]
     checks = []
     for k, network in enumerate(present):
@@ -73,7 +72,7 @@ def check_networks(store: ModelStore, known: Inputs, progress: Progress | None =
 
 
 def rejected(
-    store: ModelStore, network_ids: Sequence[str], known: Inputs, progress: Progress | None = None
+    store: ModelStore, network_ids: Sequence[str], known: Inputs, progress: Progress = SILENT
 ) -> tuple[NetworkCheck, ...]:
     """Try networks that just arrived without published checksums, and delete those that do not work.
 
@@ -86,7 +85,6 @@ def rejected(
     Returns:
         What was found of those that were deleted.
     """
-    progress = progress or Progress()
     unverified = [n for n in NETWORKS if n.id in network_ids and not n.verified]
     failed = []
     for k, network in enumerate(unverified):

@@ -51,7 +51,7 @@ from diorama_core.pipeline.steps import (
     StageStep,
     Step,
 )
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.retrieval.seen_kinds import with_seen_kinds
 from diorama_core.retrieval.word_senses import with_word_senses
 
@@ -166,7 +166,7 @@ def evaluate(
     given: Artefacts,
     wanted: Iterable[str],
     runner: Runner,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> dict[str, Any]:
     """The wanted artefacts, everything given, and what had to be computed between them.
 
@@ -182,7 +182,6 @@ def evaluate(
         DioramaError: with the reason, when a stage cannot do its work.
         KeyError: an artefact is wanted that no step gives.
     """
-    progress = progress or Progress()
     known: dict[str, Any] = {**DEFAULTS, "stages": stages, **given}
     steps = _steps_for(set(wanted), known)
     whole = sum(step.share for step in steps) or 1.0

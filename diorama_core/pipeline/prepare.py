@@ -13,7 +13,7 @@ from diorama_core.layout.problem.parts import are_cached, parts_of_shape
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.store import BUILT_IN, open_library
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.image_search import ImageSearch
 from diorama_core.render.template_cache import TemplateCache
 from diorama_core.retrieval.appearance_similarity import EmbeddedSimilarity
@@ -41,7 +41,7 @@ def prepare_library(
     views: bool = False,
     templates: bool = False,
     pool: Workers | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Prepared:
     """Compute and cache models, support surfaces and outlines of every shape of a library.
 
@@ -62,7 +62,7 @@ def prepare_library(
         Cancelled: on request; what was made stays kept.
         LibraryError: when there is no such library.
     """
-    progress, pool = progress or Progress(), pool or workers()
+    pool = pool or workers()
     library = open_library(name, anew=True)
     shapes = library.shapes()
     wanted = _Wanted(parts, views, templates)

@@ -72,7 +72,7 @@ from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import DEFAULT_RECIPE, ProposalStages, Stages, embedded_stages
 from diorama_core.pose.correspondence.features import NetworkFeatures
 from diorama_core.pose.correspondence.solvers import CorrespondencePose
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import DetectionStage
 
 Profile = Literal["auto", "embedded", "foundation"]
@@ -225,7 +225,7 @@ def _clicked(finder: DetectionStage | None, photo: Photo, pixels: Float[np.ndarr
 
 
 def propose_boxes(
-    photo: Photo, *, store: ModelStore | None = None, progress: Progress | None = None
+    photo: Photo, *, store: ModelStore | None = None, progress: Progress = SILENT
 ) -> tuple[LabelledBox, ...] | None:
     """Boxes for a photo, to be corrected by a person; None where there is no detector at all.
 

@@ -22,7 +22,7 @@ from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
 from diorama_core.pipeline.steps import Artefacts
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import ObjectStage
 from diorama_core.retrieval.seen_kinds import with_seen_kinds
 from diorama_core.retrieval.word_senses import with_word_senses
@@ -92,7 +92,7 @@ def reconstruct_object(
     *,
     mask: Bool[np.ndarray, "h w"] | None = None,
     cache: Path | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Found:
     """Reconstruct the object in a box of the photo.
 
@@ -112,7 +112,6 @@ def reconstruct_object(
     """
     if scene.camera is None:
         raise InputError("this scene has no photo camera; build it from the photo first")
-    progress = progress or Progress()
     reconstruction, _ = with_usable_networks(
         lambda store: stages_for("auto", inputs, library, store=store),
         lambda stages: _reconstructed(stages, scene, inputs, library, box, object_id, mask, Runner(cache), progress),

@@ -28,7 +28,7 @@ from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner, StageRun
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.pipeline.steps import Artefacts
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import Preview
 from diorama_core.scene.types import Scene
 
@@ -71,7 +71,7 @@ def build_scene(
     *,
     stages: Stages | None = None,
     cache: Path | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     preview: Preview | None = None,
     plane_pictures: bool = True,
 ) -> Built:
@@ -92,7 +92,6 @@ def build_scene(
     """
     prepare_processes()
     stages = stages or embedded_stages(inputs, library)
-    progress = progress or Progress()
     runner = Runner(cache)
     given: Artefacts = {"given": inputs, "library": library, "preview": preview}
     if not plane_pictures:

@@ -13,7 +13,7 @@ from diorama_core.pipeline.fallback import ChooseStages, with_usable_networks
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.stages import Stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.project.further_photos import note_placed
 from diorama_core.project.reasons import save_reasons
 from diorama_core.project.storage import Project
@@ -27,7 +27,7 @@ def build_project(
     *,
     choose: ChooseStages | None = None,
     warnings: Sequence[str] = (),
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     preview: Preview | None = None,
     save_scene: bool = True,
 ) -> Built:
@@ -67,7 +67,7 @@ def build_with_usable_networks(
     choose: ChooseStages | None = None,
     *,
     cache: Path | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     preview: Preview | None = None,
 ) -> Built:
     """`build_scene` with stages that are chosen again after a network failed; `Built.notes` names those left out.

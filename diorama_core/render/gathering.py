@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int
 
 from diorama_core.geometry.vectors import dot
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.filters import Neighbours
 from diorama_core.render.lighting import TILE, Effort, Lighting, Spots, irradiance
 from diorama_core.render.raycast import Caster, Grid, bands
@@ -27,7 +27,7 @@ ALONE = Effort(window_rays=5, sky_rays=9)
 
 
 def fallen_light(
-    world: World, blockers: Caster, grid: Grid, light: Lighting, effort: Effort, progress: Progress | None = None
+    world: World, blockers: Caster, grid: Grid, light: Lighting, effort: Effort, progress: Progress = SILENT
 ) -> Light:
     """Light on every place of a grid; 0 where nothing is seen.
 
@@ -39,7 +39,6 @@ def fallen_light(
         effort: Rays of each pixel that gathers.
         progress: Where it is reported and cancelling is noticed.
     """
-    progress = progress or Progress()
     coarse = grid.part(slice(0, None, 2), slice(0, None, 2))
     rows = bands(coarse.found.shape[0])
     noisy = np.concatenate(

@@ -25,7 +25,7 @@ from diorama_core.library.search import FoundShapes, find
 from diorama_core.library.store import BUILT_IN, StoredLibrary, open_library
 from diorama_core.library.store.features import FeatureMatrix
 from diorama_core.library.store.vectors import vector_index
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.crops import ShapeCrop
 from diorama_core.render.templates import TemplateGrid, render_templates
 from diorama_core.render.view_features import WIDTH, colour_feature, view_feature
@@ -55,7 +55,7 @@ class ImageSearch:
     library: ShapeLibrary
     folder: Path | None = None
 
-    def find(self, crop: ShapeCrop, text: str = "", k: int = 10, progress: Progress | None = None) -> FoundShapes:
+    def find(self, crop: ShapeCrop, text: str = "", k: int = 10, progress: Progress = SILENT) -> FoundShapes:
         """The `k` shapes most like a picture, best first.
 
         Args:
@@ -76,7 +76,7 @@ class ImageSearch:
             return FoundShapes(matches.shapes, matches.scores, worded.query, worded.note)
         return self._all(crop, k, progress)
 
-    def _among(self, worded: FoundShapes, crop: ShapeCrop, k: int, progress: Progress | None) -> FoundShapes:
+    def _among(self, worded: FoundShapes, crop: ShapeCrop, k: int, progress: Progress) -> FoundShapes:
         """What words found, ordered by words and picture alike."""
         matrix = self.prepared(worded.shapes, progress)
         alike = matrix.scores(_query(crop))
@@ -89,7 +89,7 @@ class ImageSearch:
         shapes = tuple(worded.shapes[i] for i in order)
         return FoundShapes(shapes, tuple(scores[i] for i in order), worded.query, worded.note)
 
-    def _all(self, crop: ShapeCrop, k: int, progress: Progress | None) -> FoundShapes:
+    def _all(self, crop: ShapeCrop, k: int, progress: Progress) -> FoundShapes:
         """The whole library by the picture alone."""
         by_key: dict[str, list[Shape]] = {}
         for shape in self.library.shapes():
@@ -103,7 +103,7 @@ class ImageSearch:
     def prepared(
         self,
         shapes: Sequence[Shape],
-        progress: Progress | None = None,
+        progress: Progress = SILENT,
         workers: Workers | None = None,
         name: str = BUILT_IN,
     ) -> FeatureMatrix:
@@ -115,7 +115,6 @@ class ImageSearch:
             workers: Where to make them; None for this process.
             name: What the workers open the library by.
         """
-        progress = progress or Progress()
         matrix = FeatureMatrix(self._folder(), WIDTH, len(SEARCH_GRID))
         by_key = {_key(s): s.id for s in shapes}
         if len(matrix) > _STALE * max(len(self.library.shapes()), 100):

@@ -15,7 +15,7 @@ from jaxtyping import Float, Float32, UInt8
 from diorama_core.geometry.openings import with_openings
 from diorama_core.geometry.sphere import directions
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.lighting import Effort, ambient
 from diorama_core.render.picture import lit, looking_along
 from diorama_core.render.raycast import PinholeView
@@ -40,7 +40,7 @@ def panorama(
     width: int = WIDTH_PX,
     textures: Mapping[str, UInt8[np.ndarray, "_ _ _"]] | None = None,
     effort: Effort = EFFORT,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Float32[np.ndarray, "h w 3"]:
     """Linear radiance from every direction, half as high as wide; 1 is a white surface in the room's light.
 
@@ -55,7 +55,6 @@ def panorama(
     Raises:
         Cancelled: when asked to stop.
     """
-    progress = progress or Progress()
     opened = with_openings(scene)
     world = scene_world(opened, library, textures=textures)
     centre, side = middle(scene), max(8, round(0.3 * width))

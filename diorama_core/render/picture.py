@@ -12,7 +12,7 @@ from diorama_core.errors import InputError, SceneError
 from diorama_core.geometry.openings import with_openings
 from diorama_core.geometry.vectors import unit
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.filters import as_bytes, tone_mapped
 from diorama_core.render.lighting import Effort, Lighting, room_lighting, studio
 from diorama_core.render.raycast import Caster, OrthographicView, PinholeView, View, bands, pixel_centres
@@ -43,7 +43,7 @@ def picture(
     photographed: bool = True,
     light: Lighting | None = None,
     effort: Effort = PICTURE_EFFORT,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> UInt8[np.ndarray, "h w 3"]:
     """A rendered picture of the scene.
 
@@ -67,7 +67,6 @@ def picture(
         SceneError: for "photo" when the scene has no camera.
         Cancelled: when asked to stop.
     """
-    progress = progress or Progress()
     progress.report(0.0, "gathering meshes and materials")
     source = scene_view(scene, view, size)
     without = _behind(scene, source)

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, Int
 
 from diorama_core.geometry.vectors import dot, unit
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.filters import tone_mapped
 from diorama_core.render.gathering import fallen_light
 from diorama_core.render.gloss import gloss_share
@@ -36,7 +36,7 @@ class Shot:
 
 
 def shoot(
-    world: World, blockers: Caster, view: View, light: Lighting, effort: Effort, progress: Progress | None = None
+    world: World, blockers: Caster, view: View, light: Lighting, effort: Effort, progress: Progress = SILENT
 ) -> Shot:
     """The light that reaches every pixel of a view.
 
@@ -51,7 +51,7 @@ def shoot(
     Raises:
         Cancelled: when asked to stop.
     """
-    progress, rows = progress or Progress(), bands(view.height)
+    rows = bands(view.height)
     parts = each(lambda band: _first_sight(world, view, band), rows, progress.part(0.0, 0.15), "casting rays")
     grid = _grid(parts, view)
     fallen = fallen_light(world, blockers, grid, light, effort, progress.part(0.15, 0.6))

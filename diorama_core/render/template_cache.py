@@ -14,7 +14,7 @@ from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import read_arrays, write_arrays
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.templates import PAPER_GRID, TemplateGrid, Templates, render_templates
 
 _FORMAT = "1"
@@ -40,7 +40,7 @@ class TemplateCache:
         self._cached: LruCache[str, Templates] = LruCache(cached)
 
     def get(
-        self, library: ShapeLibrary, shape: Shape, grid: TemplateGrid = PAPER_GRID, progress: Progress | None = None
+        self, library: ShapeLibrary, shape: Shape, grid: TemplateGrid = PAPER_GRID, progress: Progress = SILENT
     ) -> Templates:
         """The views of one shape: from memory, from its file, or rendered now (by one thread; others wait for it).
 

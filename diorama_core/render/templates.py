@@ -21,7 +21,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.large_libraries import o3d
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Camera, Intrinsics
 
 _DEPTH_STEPS = 65534
@@ -188,7 +188,7 @@ class Templates:
 def render_templates(
     mesh: trimesh.Trimesh,
     grid: TemplateGrid = PAPER_GRID,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Templates:
     """Cast all views of a mesh on one core.
 
@@ -201,7 +201,7 @@ def render_templates(
         LibraryError: when the mesh has no triangles or no extent.
         Cancelled: On request.
     """
-    return _cast_views(mesh, grid, progress or Progress(), None)
+    return _cast_views(mesh, grid, progress, None)
 
 
 def templates_with_faces(

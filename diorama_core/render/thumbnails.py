@@ -13,7 +13,7 @@ from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import derived
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.views import contact_sheet
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def shape_sheet(
     shapes: Sequence[Shape],
     size: int = 240,
     columns: int = 6,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Image.Image:
     """A contact sheet of shapes, their pictures taken from the kept ones or rendered now.
 
@@ -74,7 +74,6 @@ def shape_sheet(
         columns: Pictures side by side.
         progress: Reports and cancellation.
     """
-    progress = progress or Progress()
     done = 0
 
     def picture(shape: Shape) -> Image.Image:

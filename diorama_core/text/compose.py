@@ -18,7 +18,7 @@ from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import broad
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene import edits
 from diorama_core.scene.support import check_scene, descendants
 from diorama_core.scene.types import Pose, Scene, SceneObject
@@ -66,7 +66,7 @@ def composed_room(
     seed: int = 0,
     *,
     request: RoomRequest | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Composed:
     """The room that a prompt describes. Same prompt, seed and library give the same room.
 
@@ -87,7 +87,6 @@ def composed_room(
         unwished = [o.id for o in scene.objects if {o.category, broad(o.category)} & set(request.excluded)]
         scene = edits.remove(scene, [*unwished, *(c for i in unwished for c in descendants(scene, i))])
         return Composed(scene, ignored, request)
-    progress = progress or Progress()
     best: tuple[float, Composed] | None = None
     for attempt in range(TRIES):
         progress.report(attempt / TRIES, "Composing a room from the library")

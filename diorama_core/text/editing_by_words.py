@@ -13,7 +13,7 @@ from diorama_core.editing.positioning import Positioner
 from diorama_core.errors import EditRefused, UnavailableError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.language.client import LmmClient, LmmSettings
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.schema import check_limits
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Scene
@@ -52,7 +52,7 @@ def propose_edits(
     *,
     selected: Sequence[str] = (),
     language_model: LmmSettings | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> ProposedEdits:
     """What a command in words would do to a scene, which stays as it is.
 
@@ -71,7 +71,7 @@ def propose_edits(
     if language_model is None:
         return _by_grammar(command, scene, library, selected)
     try:
-        return _by_model(command, scene, library, language_model, selected, progress or Progress())
+        return _by_model(command, scene, library, language_model, selected, progress)
     except (UnavailableError, EditRefused) as trouble:
         try:
             plain = _by_grammar(command, scene, library, selected)
@@ -88,7 +88,7 @@ def apply_edits(
     *,
     command: str = "",
     translator: str = "",
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> ProposedEdits:
     """What typed edits would do to a scene, one after the other; the scene stays as it is.
 
@@ -107,8 +107,7 @@ def apply_edits(
     lines: list[str] = []
     notes: list[str] = []
     for number, edit in enumerate(edits, 1):
-        if progress is not None:
-            progress.check()
+        progress.check()
         try:
             done = applier.apply(after, edit)
         except EditRefused as error:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import UnavailableError
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.text.scene_from_text import words_of
 
 TEMPLATE = (
@@ -49,7 +49,7 @@ class TextPicture:
     """How the picture came about, to be shown with the scene."""
 
 
-def picture_of(prompt: str, endpoint: ImageSettings, progress: Progress | None = None) -> TextPicture:
+def picture_of(prompt: str, endpoint: ImageSettings, progress: Progress = SILENT) -> TextPicture:
     """A picture of what the prompt describes, from an image endpoint.
 
     Args:
@@ -61,7 +61,7 @@ def picture_of(prompt: str, endpoint: ImageSettings, progress: Progress | None =
         InputError: an empty or very long prompt.
         UnavailableError: the endpoint fails: one line that says why.
     """
-    words, progress = words_of(prompt), progress or Progress()
+    words = words_of(prompt)
     progress.report(0.0, f"Asking {endpoint.model} for a picture")
     read = read_inputs(_generated(words, endpoint), name="generated.png")
     progress.report(1.0, "The picture is here")

@@ -15,7 +15,7 @@ from diorama_core.geometry.rooms import part_of_home
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category, with_kin
 from diorama_core.perception.language.client import LmmSettings
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis import in_photo_world
 from diorama_core.synthesis.finishes import finish_textures
@@ -74,7 +74,7 @@ def scene_from_text(
     *,
     seed: int = 0,
     language_model: LmmSettings | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> SceneFromText:
     """The room that a prompt describes.
 
@@ -89,7 +89,7 @@ def scene_from_text(
         InputError: an empty or very long prompt.
         Cancelled: on request.
     """
-    words, progress = words_of(prompt), progress or Progress()
+    words = words_of(prompt)
     if rooms := rooms_asked(words):
         home, unmet_lines = composed_home(rooms, library, seed, progress.part(0.0, 0.6))
         scene, textures = finished(home, library)

@@ -22,7 +22,7 @@ from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_
 from diorama_core.evaluation.benchmarks.recognition import in_photo
 from diorama_core.library.form import MEASURED
 from diorama_core.models.recogniser import places
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.training.export import export_detector
 from diorama_core.training.networks import Detector, detector_loss
 from diorama_core.training.picture_files import PictureFiles
@@ -91,7 +91,7 @@ def adapted_detector(
     kinds: int,
     output: Path,
     how: Adaptation | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> None:
     """Write the detector adapted to photos.
 
@@ -104,7 +104,7 @@ def adapted_detector(
         how: schedule and shares.
         progress: reports and cancellation.
     """
-    how, progress = how or Adaptation(), progress or Progress()
+    how = how or Adaptation()
     before = trained_detector(graph, kinds)
     network, pictures = copy.deepcopy(before), MixedPictures(tuple(photos), rendered, how.of_photos)
     averaged, schedule = copy.deepcopy(network), how.schedule

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from diorama_core.io.atomic import write_atomically
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 T = TypeVar("T")
 
@@ -17,7 +17,7 @@ def make_files(
     items: Sequence[T],
     name_of: Callable[[T], str],
     made: Callable[[T], bytes],
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> int:
     """Make the files of some items that are not in the folder yet.
 
@@ -31,7 +31,7 @@ def make_files(
     Returns:
         The number of files made now.
     """
-    progress, count = progress or Progress(), 0
+    count = 0
     folder.mkdir(parents=True, exist_ok=True)
     for k, item in enumerate(items):
         target = folder / name_of(item)

@@ -14,7 +14,7 @@ from PIL import Image
 from diorama_core.errors import InputError, LibraryError, SceneError
 from diorama_core.library.form import MEASURED, form_at, value_indices
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import SceneObject
 from diorama_core.scene.values import ArrayValue
 from diorama_core.synthesis import sample_cameras
@@ -53,7 +53,7 @@ def category_names(library: ShapeLibrary) -> tuple[str, ...]:
     return tuple(sorted({s.category for s in library.shapes()}))
 
 
-def make_pictures(folder: Path, library: ShapeLibrary, seeds: range, progress: Progress | None = None) -> int:
+def make_pictures(folder: Path, library: ShapeLibrary, seeds: range, progress: Progress = SILENT) -> int:
     """Render the rooms of some seeds that are not in the folder yet.
 
     Args:

@@ -18,7 +18,7 @@ from diorama_core.errors import InputError
 from diorama_core.library.form import MEASURED, VALUES, form_at, value_indices
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.models.images import CROP_SIDE, FILL, MARGIN
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.views import StudioView, render_shape
 from diorama_core.scene.values import ArrayValue
 from diorama_core.training.made_files import make_files
@@ -50,7 +50,7 @@ class ShapeViews(ArrayValue):
     """`library.form.value_indices` at its own size."""
 
 
-def make_shape_views(folder: Path, library: ShapeLibrary, progress: Progress | None = None) -> int:
+def make_shape_views(folder: Path, library: ShapeLibrary, progress: Progress = SILENT) -> int:
     """Render the shapes that are not in the folder yet.
 
     Args:

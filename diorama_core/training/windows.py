@@ -15,7 +15,7 @@ from torch import Tensor
 from diorama_core.errors import InputError, LibraryError, SceneError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.outliner import FILL, SIDE, resampled
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.values import ArrayValue
 from diorama_core.synthesis import sample_cameras
 from diorama_core.synthesis.truth import Studio
@@ -46,7 +46,7 @@ class Windows(ArrayValue):
     """Where there is a picture."""
 
 
-def make_windows(folder: Path, library: ShapeLibrary, seeds: range, progress: Progress | None = None) -> int:
+def make_windows(folder: Path, library: ShapeLibrary, seeds: range, progress: Progress = SILENT) -> int:
     """Render the rooms of some seeds that are not in the folder yet.
 
     Args:

@@ -15,7 +15,7 @@ from diorama_core.models.manifest import NETWORKS, network, networks_of
 from diorama_core.models.network import TIERS, ModelFile, Network
 from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore, default_folder
-from diorama_core.progress import CancelToken, Progress, ProgressEvent
+from diorama_core.progress import SILENT, CancelToken, Progress, ProgressEvent
 from tests.models.stub_hub import SHA, Hub, serving
 
 GRAPH = bytes(range(256)) * 4000
@@ -54,7 +54,7 @@ def store(tmp_path: Path) -> ModelStore:
     return ModelStore(tmp_path / "models")
 
 
-def _pull(store: ModelStore, *networks: Network, progress: Progress | None = None) -> tuple[str, ...]:
+def _pull(store: ModelStore, *networks: Network, progress: Progress = SILENT) -> tuple[str, ...]:
     return pull(store, networks, accept=lambda _: True, progress=progress)
 
 

@@ -21,7 +21,7 @@ from diorama_core.evaluation.reports.tables import Interval, paired_interval
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.settings import with_settings
 from diorama_core.pipeline.stages import Stages, embedded_stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 FACTORS: Mapping[str, float] = {"left out": 0.0, "halved": 0.5, "doubled": 2.0}
 
@@ -50,7 +50,7 @@ def built(
     *,
     rooms: int = 0,
     processes: int = 1,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Figures:
     """Build the photos and some rendered rooms with other values of settings.
 
@@ -62,7 +62,6 @@ def built(
         processes: photos built at once.
         progress: reports and cancellation.
     """
-    progress = progress or Progress()
     changed = replace(plan, tasks=tuple(replace(task, settings=dict(values)) for task in plan.tasks))
     bench = photos_bench.run(changed, library, processes=processes, progress=progress.part(0.0, 0.8))
     if not rooms:

@@ -23,7 +23,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import embedded_stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import ArchitectureStage
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.truth import TruthView
@@ -73,7 +73,7 @@ class ArchitectureBench:
 
 
 def run(
-    library: ShapeLibrary, scenes: int = 20, seeds: Sequence[int] = (0,), progress: Progress | None = None
+    library: ShapeLibrary, scenes: int = 20, seeds: Sequence[int] = (0,), progress: Progress = SILENT
 ) -> ArchitectureBench:
     """Reconstruct every room of every seed's series from what each row of the table is given.
 
@@ -83,7 +83,6 @@ def run(
         seeds: one a series.
         progress: reports and cancellation.
     """
-    progress = progress or Progress()
     results: dict[str, list[RoomResult]] = {}
     left_out: list[LeftOut] = []
     series = {case.name: seed for seed in seeds for case in recipe(scenes, 1, seed)}

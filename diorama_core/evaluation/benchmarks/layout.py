@@ -17,7 +17,7 @@ from diorama_core.layout.published import costs, staged
 from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe, one_thread
 from diorama_core.layout.recipes import recipe
 from diorama_core.layout.report import measure
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Pose, Scene
 from diorama_core.synthesis.layout_rooms import GeneratedRoom, Noise, box_library, generate_room, perturb_graph
@@ -99,7 +99,7 @@ def _table(title: str, rows: Sequence[LayoutRow]) -> str:
     return "\n".join([f"## {title} ({rows[0].rooms if rows else 0} rooms)", "", head, *lines])
 
 
-def run(scenes: int = 40, seed: int = 0, progress: Progress | None = None) -> LayoutBench:
+def run(scenes: int = 40, seed: int = 0, progress: Progress = SILENT) -> LayoutBench:
     """Measure everything. Deterministic but for the times.
 
     Args:
@@ -107,7 +107,6 @@ def run(scenes: int = 40, seed: int = 0, progress: Progress | None = None) -> La
         seed: of the rooms.
         progress: reports, and cancels between rooms.
     """
-    progress = progress or Progress()
     library = box_library()
     rooms = [generate_room(seed + k, ROOM) for k in range(scenes)]
     few = rooms[: max(scenes // 4, 1)]

@@ -36,7 +36,7 @@ from diorama_core.layout.exact import mesh_overlap_m3
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import with_kin
 from diorama_core.pipeline.run import build_scene
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Scene, SceneObject
 from diorama_core.synthesis.truth import moved
 
@@ -112,7 +112,7 @@ class LocalBench:
 
 
 def run(
-    dataset: Dataset, path: Path, library: ShapeLibrary, scenes: int = 20, progress: Progress | None = None
+    dataset: Dataset, path: Path, library: ShapeLibrary, scenes: int = 20, progress: Progress = SILENT
 ) -> LocalBench:
     """Build the first pictures of a dataset, in the order of their names; failures count as wrong.
 
@@ -126,7 +126,6 @@ def run(
     Raises:
         InputError: when the folder holds no picture laid out as the dataset publishes it.
     """
-    progress = progress or Progress()
     results = []
     for k, case in enumerate(islice(local_cases(dataset, path), scenes)):
         progress.report(min(k / scenes, 1.0), case.name)

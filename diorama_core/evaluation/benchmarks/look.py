@@ -38,7 +38,7 @@ from diorama_core.geometry.window import Window
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import relative_scale, stretched_parts
 from diorama_core.pose import MadeToMeasure, RenderAndCompare
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.picture import instances_seen, picture
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.scene.types import Camera, Pose, Scene, SceneObject
@@ -139,7 +139,7 @@ Show = Callable[[str, Picture, Picture, Picture], None]
 
 
 def run(
-    library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progress | None = None, show: Show | None = None
+    library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progress = SILENT, show: Show | None = None
 ) -> LookBench:
     """Fit and dress every object of some rooms. Rooms that fail are left out with a warning.
 
@@ -150,7 +150,6 @@ def run(
         progress: reports and cancellation.
         show: receives the pictures of every room.
     """
-    progress = progress or Progress()
     objects: list[ObjectLook] = []
     spent: dict[str, list[tuple[float, float, int]]] = {given: [] for given in GIVEN}
     lights: list[tuple[str, float]] = []

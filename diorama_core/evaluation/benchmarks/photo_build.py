@@ -38,7 +38,7 @@ from diorama_core.perception.inputs import read_inputs
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.settings import with_settings
 from diorama_core.pipeline.stages import embedded_stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.picture import picture
 from diorama_core.synthesis.truth import TruthView
 
@@ -213,7 +213,7 @@ def _title(photo: str, perturbation: str) -> str:
     return f"{photo}, {perturbation}" if perturbation else photo
 
 
-def build_photo(task: PhotoTask, library: ShapeLibrary, progress: Progress | None = None) -> PhotoScores:
+def build_photo(task: PhotoTask, library: ShapeLibrary, progress: Progress = SILENT) -> PhotoScores:
     """Build and compare one photo; whatever goes wrong, it counts as failed and everything in it as wrong.
 
     Raises:

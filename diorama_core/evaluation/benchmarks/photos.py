@@ -30,7 +30,7 @@ from diorama_core.evaluation.benchmarks.photo_tables import (
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.io.bounded import read_json
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.workers import workers
 
 SHEET_COLUMNS = 2
@@ -181,7 +181,7 @@ def run(
     known: Sequence[PhotoScores] = (),
     processes: int = 1,
     after_photo: Callable[[PhotosBench], None] | None = None,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> PhotosBench:
     """Build every photo of a plan; failures count as wrong.
 
@@ -193,7 +193,6 @@ def run(
         after_photo: called with the results so far after every photo, so that an interrupted run has some.
         progress: reports and cancellation.
     """
-    progress = progress or Progress()
     of_key = {r.key: r for r in known if not r.failure}
     done = {task.title: of_key[key] for task in asked.tasks if (key := task.key()) in of_key and _drawn(task)}
     waiting = [task for task in asked.tasks if task.title not in done]

@@ -46,7 +46,7 @@ from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe
 from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.given_stages import AsObserved
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Scene, Support
 from diorama_core.synthesis.artefacts import true_supports
@@ -141,7 +141,7 @@ class _Tally:
         )
 
 
-def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progress | None = None) -> PoseBench:
+def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progress = SILENT) -> PoseBench:
     """Pose every room by every solver, with few and many retrieved shapes, and arrange it every way.
 
     What cannot be done counts as a room in which everything is wrong.
@@ -152,7 +152,6 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
         seed: of the series of rooms.
         progress: reports and cancellation.
     """
-    progress = progress or Progress()
     tally = _Tally()
     solvers = SideBySide.embedded(library)
     cases = recipe(scenes, 1, seed)

@@ -17,7 +17,7 @@ from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.library.taxonomy import broad
 from diorama_core.models.boxes import overlaps
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import DetectionStage
 
 BEST = 20
@@ -136,7 +136,7 @@ def run(
     routes: Mapping[str, DetectionStage],
     namers: Mapping[str, Namer],
     clickers: Mapping[str, Clicker],
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> RecognitionBench:
     """Let every route look at every annotated photo that the folder has.
 
@@ -151,7 +151,6 @@ def run(
     Raises:
         InputError: when the annotations cannot be read, or the folder has none of the photos.
     """
-    progress = progress or Progress()
     known = read_annotations(annotations)
     present = {name: path for name in known if (path := picture_of(photos, name)) is not None}
     if not present:

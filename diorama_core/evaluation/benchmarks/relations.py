@@ -32,7 +32,7 @@ from diorama_core.perception.language.stages import LanguageGraph, LanguageRecog
 from diorama_core.perception.masks import EmbeddedMasks
 from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.metrology import SingleViewMetrology
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import GraphStage
 from diorama_core.provenance import CameraSource
 from diorama_core.scene.types import Scene, Support
@@ -184,7 +184,7 @@ def run(
     library: ShapeLibrary,
     scenes: int = 18,
     seed: int = 0,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     language_model: LmmSettings | None = None,
 ) -> RelationsBench:
     """Judge the graph of every room's first picture, with depth and without.
@@ -199,7 +199,6 @@ def run(
     Raises:
         UnavailableError: when the language model is asked wrongly (key, model), or never answers usably.
     """
-    progress = progress or Progress()
     counts = {WITH_DEPTH: RelationCount(), PHOTO_ALONE: RelationCount()}
     settings = None if language_model is None else replace(language_model, cache=None)
     asked: list[AskedSupport] = []

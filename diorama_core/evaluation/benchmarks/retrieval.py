@@ -21,7 +21,7 @@ from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_row
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.search import find
 from diorama_core.library.taxonomy import broad
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import RetrievalStage
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.retrieval.joint import JointEmbedding
@@ -91,7 +91,7 @@ def run(
     library: ShapeLibrary,
     scenes: int = 20,
     seed: int = 0,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     embeddings: Mapping[str, JointEmbedding] | None = None,
 ) -> RetrievalBench:
     """Retrieve for every object asked for, from the whole library and from its training and validation shapes.
@@ -103,7 +103,6 @@ def run(
         progress: Where it is reported.
         embeddings: By their names in the publication's table, each gets its rows; see `published_stages`.
     """
-    progress = progress or Progress()
     tested = split_library(library, "test")
     unoffered = split_library(library, "train", "validation")
     everything, others = HierarchicalRetrieval(library), HierarchicalRetrieval(unoffered)

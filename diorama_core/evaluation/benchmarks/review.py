@@ -20,7 +20,7 @@ from diorama_core.evaluation.metrics.annotated import carrier_of, front_error_of
 from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.pipeline.run import build_scene
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.review.answers import answered
 from diorama_core.review.questions import TURNS, YES, Question, Subject, questions
 from diorama_core.scene.types import Scene
@@ -130,7 +130,7 @@ class Reviewed:
         return next((c.value for c in question.choices if c.value in planes), next(iter(planes), None))
 
 
-def built(task: PhotoTask, library: ShapeLibrary, progress: Progress | None = None) -> Reviewed:
+def built(task: PhotoTask, library: ShapeLibrary, progress: Progress = SILENT) -> Reviewed:
     """The scene of an annotated photo, with the truth of its objects.
 
     Raises:
@@ -143,14 +143,14 @@ def built(task: PhotoTask, library: ShapeLibrary, progress: Progress | None = No
     return Reviewed(scene, {name: case.annotation.objects[k] for name, k in known.items()}, known, library)
 
 
-def run(tasks: Sequence[PhotoTask], library: ShapeLibrary, progress: Progress | None = None) -> ReviewBench:
+def run(tasks: Sequence[PhotoTask], library: ShapeLibrary, progress: Progress = SILENT) -> ReviewBench:
     """Build and review annotated photos.
 
     Raises:
         DioramaError: a photo cannot be built.
         Cancelled: on request.
     """
-    progress, scenes = progress or Progress(), []
+    scenes = []
     for k, task in enumerate(tasks):
         scenes.append(built(task, library, progress.part(k / len(tasks), (k + 1) / len(tasks))))
     return ReviewBench(tuple(scenes))

@@ -19,7 +19,7 @@ from diorama_core.evaluation.reports.tables import Table
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.pipeline.run import build_scene
 from diorama_core.pipeline.stages import embedded_stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.review.answers import answered
 from diorama_core.review.questions import TURNS, YES, Question
 from diorama_core.scene.types import Scene, SceneObject
@@ -113,7 +113,7 @@ class KnownRoom:
 
 
 def run(
-    library: ShapeLibrary, scenes: int = 12, seed: int = 0, progress: Progress | None = None, *, named: bool = True
+    library: ShapeLibrary, scenes: int = 12, seed: int = 0, progress: Progress = SILENT, *, named: bool = True
 ) -> RoomReview:
     """Build one photo of every room, and review what comes of it.
 
@@ -127,7 +127,6 @@ def run(
     Raises:
         Cancelled: on request.
     """
-    progress = progress or Progress()
     tested, searched = split_library(library, "test"), split_library(library, "train", "validation")
     left_out: list[LeftOut] = []
     cases = recipe(scenes, 1, seed)

@@ -12,7 +12,7 @@ from jaxtyping import UInt8
 from diorama_core.evaluation.benchmarks.cases import MIN_ASKED, Case, recipe, studio_of
 from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.synthesis.splits import split_library
 from diorama_core.synthesis.survey import RoomSurvey, ViewSurvey, counted, survey_room, survey_view
 
@@ -51,7 +51,7 @@ class RoomsBench:
 
 
 def run(
-    library: ShapeLibrary, scenes: int = 60, seed: int = 0, progress: Progress | None = None
+    library: ShapeLibrary, scenes: int = 60, seed: int = 0, progress: Progress = SILENT
 ) -> tuple[RoomsBench, UInt8[np.ndarray, "h w 3"]]:
     """Furnish rooms from test shapes, check them by exact collision, and photograph each three times, small.
 
@@ -64,7 +64,6 @@ def run(
     Returns:
         What was counted, and a sheet of all pictures.
     """
-    progress = progress or Progress()
     tested = split_library(library, "test")
     rooms, views, pictures = [], [], []
     cases = recipe(scenes, 1, seed)

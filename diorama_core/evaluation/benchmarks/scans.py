@@ -25,7 +25,7 @@ from diorama_core.importing.point_files import read_points
 from diorama_core.importing.scanned_kinds import with_scanned_kinds
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Scene, SceneObject, yaw_rotation
 from diorama_core.synthesis.scan import scanned, write_scan
 from diorama_core.synthesis.splits import split_library
@@ -104,7 +104,7 @@ class ScansBench:
         }
 
 
-def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progress | None = None) -> ScansBench:
+def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progress = SILENT) -> ScansBench:
     """Scan rooms and open the scans.
 
     Args:
@@ -113,7 +113,6 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
         seed: of the series of rooms.
         progress: reports, and cancels between rooms.
     """
-    progress = progress or Progress()
     tested, searched = split_library(library, "test"), split_library(library, "train", "validation")
     cases, left_out = recipe(scenes, 1, seed), list[LeftOut]()
     results: list[ScanResult] = []

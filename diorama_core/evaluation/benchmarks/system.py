@@ -31,7 +31,7 @@ from diorama_core.library.taxonomy import UNKNOWN, resolve
 from diorama_core.pipeline.published import acdc_stages, published_acdc_stages, published_stages
 from diorama_core.pipeline.run import Built, build_scene
 from diorama_core.pipeline.stages import Stages, embedded_stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.splits import split_library
 from diorama_core.synthesis.truth import TruthView
@@ -182,7 +182,7 @@ def run(
     library: ShapeLibrary,
     scenes: int = 20,
     seeds: Sequence[int] = (0,),
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     *,
     ways: Sequence[Way] = (),
     offered: bool = False,
@@ -203,7 +203,6 @@ def run(
         show: called with every case's name, photo, and the results of all ways (None where one failed).
         after_room: called with the results so far after every room, so that an interrupted run has some.
     """
-    progress = progress or Progress()
     ways = tuple(ways) or ways_of(USUAL_WAYS)
     tested = split_library(library, "test")
     searched = library if offered else split_library(library, "train", "validation")

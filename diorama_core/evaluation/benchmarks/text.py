@@ -15,7 +15,7 @@ from jaxtyping import UInt8
 from diorama_core.evaluation.metrics.text_scene import Asked, TextScene, measure
 from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.render.picture import picture
 from diorama_core.scene.types import Scene
 from diorama_core.text.compose import composed_room
@@ -83,7 +83,7 @@ def run(
     library: ShapeLibrary,
     scenes: int = 64,
     seed: int = 0,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     *,
     pictures: bool = False,
 ) -> tuple[TextBench, UInt8[np.ndarray, "_ _ 3"] | None]:
@@ -99,7 +99,6 @@ def run(
     Returns:
         The measures, and the sheet where it was asked for.
     """
-    progress = progress or Progress()
     series = {name: prompts_of(name) for name in SERIES}
     first = (scenes + 1) // 2 if scenes < sum(map(len, series.values())) else scenes
     wanted = [(name, asked) for name in SERIES for asked in series[name][:first]][:scenes]

@@ -28,7 +28,7 @@ from diorama_core.multiview.rooms import PosedInputs, build_room
 from diorama_core.multiview.sphere_scene import build_sphere
 from diorama_core.pipeline.run import build_scene
 from diorama_core.pipeline.stages import Stages, embedded_stages
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.room_edits import ceiling_height
 from diorama_core.scene.types import Camera, Scene
 from diorama_core.synthesis import sample_cameras
@@ -123,7 +123,7 @@ def run(
     library: ShapeLibrary,
     scenes: int = 6,
     seed: int = 0,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     *,
     counts: Sequence[int] = COUNTS,
 ) -> ViewsBench:
@@ -136,7 +136,6 @@ def run(
         progress: reports, and cancels between builds.
         counts: numbers of photos.
     """
-    progress = progress or Progress()
     tested, searched = split_library(library, "test"), split_library(library, "train", "validation")
     results: list[ViewsResult] = []
     left_out: list[LeftOut] = []

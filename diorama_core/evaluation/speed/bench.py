@@ -25,7 +25,7 @@ from diorama_core.evaluation.speed.regression import (
 )
 from diorama_core.evaluation.speed.series import OBJECTS, Series
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 __all__ = [
     "FULL",
@@ -134,7 +134,7 @@ class SpeedBench:
 def run(
     library: ShapeLibrary,
     seed: int = 0,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
     extent: Extent = FULL,
     *,
     before: Mapping[str, float] | None = None,
@@ -150,7 +150,6 @@ def run(
     """
     extent.check()
     known = committed_figures() if before is None else before
-    progress = progress or Progress()
     sticks = [yardstick_s()]
     series = measure.stages_by_objects(library, seed, extent.large_scene_objects, progress.part(0.0, 0.55))
     sticks.append(yardstick_s())

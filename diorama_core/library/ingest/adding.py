@@ -23,7 +23,7 @@ from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
 from diorama_core.library.ingest.shaping import ModelSource, Painter, confidence, evidence_of, ingest_file
 from diorama_core.library.ingest.sink import Ingested, ShapeSink
 from diorama_core.library.record import Shape
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 from diorama_core.workers import Workers
 
 LEARNING_SHARE = 0.8
@@ -59,7 +59,7 @@ def add_models(
     painter: Painter | None = None,
     skipped: Sequence[Trouble] = (),
     limits: Limits = DEFAULT_LIMITS,
-    progress: Progress | None = None,
+    progress: Progress = SILENT,
 ) -> Added:
     """Take models in; a file that fails never stops the others.
 
@@ -76,7 +76,6 @@ def add_models(
         Cancelled: on request; what is kept stays.
         LibraryError: when the sink cannot keep a shape.
     """
-    progress = progress or Progress()
     have = sink.source_keys()
     waiting = [s for s in models if s.key not in have]
     learnt = _learn(progress) if waiting else 0.0
