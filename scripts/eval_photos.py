@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from diorama_core.evaluation.metrics.photo_agreement import agreement
+from diorama_core.evaluation.metrics.annotated import agreement
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.inputs import read_inputs

@@ -21,15 +21,17 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.optimize import minimize
 
-from diorama_core.arrangement.noise import MEASURED, REASONED, ObservationNoise
-from diorama_core.arrangement.standing import LEAST_ODDS, STANDING_TERMS, wall_relation
 from diorama_core.arrangement.support_hypotheses import (
+    MEASURED,
+    REASONED,
+    ObservationNoise,
     SupportEvidence,
     SupportHypothesis,
     seen_below,
     support_hypotheses,
 )
 from diorama_core.arrangement.support_terms import PATH, TERMS, place_name
+from diorama_core.arrangement.supports import LEAST_ODDS, STANDING_TERMS, wall_relation
 from diorama_core.artefacts import Inputs
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto
 from diorama_core.evaluation.benchmarks.cases import SEEDS, attempted, recipe
@@ -39,8 +41,7 @@ from diorama_core.evaluation.benchmarks.system import WAYS
 from diorama_core.evaluation.metrics.scene import in_true_world, matched
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.pipeline.assemble import assemble
-from diorama_core.pipeline.plan import evaluate
+from diorama_core.pipeline.plan import assemble, evaluate
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import Progress

@@ -32,7 +32,7 @@ def tables() -> dict[str, str]:
     from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
     from diorama_core.perception.inputs.depth.scale import USUAL_UNITS
     from diorama_core.perception.inputs.masks.table import MASK_FORMS
-    from diorama_core.perception.inputs.photos.table import PHOTO_FORMS
+    from diorama_core.perception.inputs.photos.reading import PHOTO_FORMS
 
     models = [f"| {f.name} | {', '.join(f.suffixes)} | {f.note} |" for f in MODEL_FORMS]
     scenes = [

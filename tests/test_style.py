@@ -20,7 +20,7 @@ MANY_PARAMETERS = 4
 EXPLAINED_ELSEWHERE = ("diorama_core/library/furniture/", "diorama_app/agents/tools.py", "diorama_app/http_api/")
 """Designs' parameters are the words of their tables; those of HTTP and MCP have descriptions in their annotations."""
 ODD_WORDS = re.compile(r"\b(things?|anew|alike|upon|whoever|hitherto|(is|are|was) (told|said))\b", re.IGNORECASE)
-VOCABULARIES = ("diorama_core/text/", "diorama_core/library/definitions.py", "diorama_core/evaluation/adapters/")
+VOCABULARIES = ("diorama_core/text/", "diorama_core/library/search.py", "diorama_core/evaluation/adapters/")
 """Modules with words that people and data sets use."""
 PAGES = [
     *sorted((ROOT / "docs").glob("*.md")),

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from diorama_app.cli.arguments import command, progress_bar
-from diorama_app.cli.bench_output import Bench, show_bench, write_json, write_text
-from diorama_app.cli.bench_photos import add_photos, add_review_bench
+from diorama_app.cli.bench_photos import Bench, add_photos, add_review_bench, show_bench, write_json, write_text
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ Nothing is known to hold it, and it stays where it was measured.
 
 from __future__ import annotations
 
-from diorama_core.arrangement.noise import ObservationNoise
+from diorama_core.arrangement.support_hypotheses import ObservationNoise
 from diorama_core.arrangement.surfaces import (
     FLAT,
     OUT_OF_REACH_M,

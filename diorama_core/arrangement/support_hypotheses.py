@@ -9,15 +9,14 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from jaxtyping import Bool
+from jaxtyping import Bool, Float
 
-from diorama_core.arrangement.noise import ObservationNoise
 from diorama_core.arrangement.surfaces import RestingSurface, choose_contact, object_surfaces, outside_m, plane_surface
 from diorama_core.library import taxonomy
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import Category
 from diorama_core.scene.frames import UP_WORLD
-from diorama_core.scene.types import Plane, Scene, SceneObject, Support
+from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
 
 Role = Literal["floor", "wall", "ceiling", "object"]
 Box = tuple[float, float, float, float]
@@ -190,6 +189,8 @@ def _width_m(item: SceneObject) -> float:
 
 COLUMNS = 320
 """Masks are compared at about this width: a rim is a few pixels wide there, whatever the photo's size."""
+
+
 RIM_SHARE = 0.01
 """How far below the rim to look, as a share of the picture's height: past the shadow and the error of a mask."""
 
@@ -223,3 +224,38 @@ def _below(owners: np.ndarray, k: int) -> dict[int, float]:
     seen = owners[under[inside], columns[ends][inside]]
     below, counts = np.unique(seen[(seen >= 0) & (seen != k)], return_counts=True)
     return {int(other): float(count) / max(int(ends.sum()), 1) for other, count in zip(below, counts, strict=True)}
+
+
+@dataclass(frozen=True)
+class ObservationNoise:
+    """Standard deviations of an observed position."""
+
+    along: float
+    """Along the viewing ray, as a share of the distance."""
+    across_m: float
+    """Across it, and the least along it."""
+    measured: bool = False
+    """Whether distances were measured; those reasoned from a photo alone follow from what holds an object."""
+
+    def tolerance_m(
+        self, camera: Camera | None, position: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]
+    ) -> float:
+        """Two standard deviations of a position in one direction of the world; without a camera, those across.
+
+        Args:
+            camera: in the world.
+            position: of the object, in the world (m).
+            direction: unit, in the world.
+        """
+        if camera is None:
+            return 2.0 * self.across_m
+        sight = position - camera.position
+        return 2.0 * float(np.hypot(self.along * float(sight @ direction), self.across_m))
+
+
+MEASURED = ObservationNoise(along=0.01, across_m=0.02, measured=True)
+"""With measured depth; most of it is what the object itself hides."""
+
+
+REASONED = ObservationNoise(along=0.05, across_m=0.05)
+"""From a photo alone, relative to what is beside or below: errors common to the room cancel."""

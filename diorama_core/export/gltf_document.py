@@ -2,6 +2,15 @@
 
 Written to the letter of the Khronos specification: little endian, every view aligned to four bytes, bounds stated
 for positions, indices as small as they can be, texture rows from the top, pictures with power-of-two sides.
+
+Geometry compressed as EXT_meshopt_compression stores it.
+
+Positions are rounded to a sixteenth of a millimetre and texture coordinates to 1/4096, which compresses well and
+moves nothing visibly; directions become normalised bytes (KHR_mesh_quantization).
+
+Geometry compressed as KHR_draco_mesh_compression stores it: Google's Draco, by DracoPy.
+
+Positions move by at most a sixteenth of a millimetre, normals by a quarter of a degree, texture coordinates by 1/4096.
 """
 
 from __future__ import annotations
@@ -9,15 +18,17 @@ from __future__ import annotations
 import io
 import json
 import struct
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
+import meshoptimizer
 import numpy as np
+from jaxtyping import Float32, Int, Integer
 
-from diorama_core.export import meshopt
-from diorama_core.export.draco import EXTENSION, draco_mesh
+from diorama_core.errors import UnavailableError
 from diorama_core.export.gathering import Compression
 from diorama_core.export.pictures import OncePerPicture, Picture, texture_file
-from diorama_core.export.tangents import tangents
 from diorama_core.io.atomic import ByteSink
 from diorama_core.render.appearance import Material, Surface
 
@@ -26,9 +37,15 @@ _COMPONENT_TYPES = {"f4": 5126, "u2": 5123, "u4": 5125, "i1": 5120}
 _MEDIA_TYPES = {".jpg": "image/jpeg", ".png": "image/png"}
 _WIDTHS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _MAGIC, _JSON_CHUNK, _BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
-
-
 TextureFiles = OncePerPicture[[], tuple[str, bytes]]
+MESHOPT_EXTENSION = "EXT_meshopt_compression"
+_STEPS = {"POSITION": 2.0**14, "TEXCOORD_0": 2.0**12, "TEXCOORD_1": 2.0**12, "COLOR_0": 2.0**8}
+DRACO_EXTENSION = "KHR_draco_mesh_compression"
+STEP_M = 1.25e-4
+"""Distance of neighbouring positions at most; rounding moves by half of it."""
+UV_BITS, NORMAL_BITS, LEVEL = 12, 10, 7
+_OWN = {"TANGENT": 10, "COLOR_0": 11}
+"""Ids of the attributes that Draco has no type for, or rounds to bytes; they are stored as they are."""
 
 
 class GltfDocument:
@@ -83,7 +100,7 @@ class GltfDocument:
         if self._data:
             self._json["buffers"] = [{"byteLength": len(self._data)}]
         if self._decoded_bytes:
-            fallback = {"byteLength": self._decoded_bytes, "extensions": {meshopt.EXTENSION: {"fallback": True}}}
+            fallback = {"byteLength": self._decoded_bytes, "extensions": {MESHOPT_EXTENSION: {"fallback": True}}}
             self._json["buffers"].append(fallback)
         text = json.dumps(self._json, separators=(",", ":"), allow_nan=False, ensure_ascii=False).encode()
         text += b" " * (-len(text) % 4)
@@ -126,7 +143,7 @@ class GltfDocument:
         if self._draco:
             return self._draco_primitive(arrays, faces, self._material(material, textured=textured))
         if self._compressed:
-            arrays, faces = meshopt.prepared(arrays, faces)
+            arrays, faces = prepared(arrays, faces)
         return {
             "attributes": {name: self._attribute(name, values) for name, values in arrays.items()},
             "indices": self._indices(faces.reshape(-1), len(surface.vertices)),
@@ -136,7 +153,7 @@ class GltfDocument:
     def _draco_primitive(self, arrays: dict[str, np.ndarray], faces: np.ndarray, material: int) -> dict[str, Any]:
         """A primitive whose accessors say what Draco's data decode to."""
         packed = draco_mesh(arrays, faces)
-        self.use(EXTENSION, required=True)
+        self.use(DRACO_EXTENSION, required=True)
         accessors = {}
         for name in arrays:
             kind = _WIDTHS[arrays[name].shape[1]]
@@ -151,7 +168,7 @@ class GltfDocument:
             "attributes": accessors,
             "indices": self.add("accessors", indices),
             "material": material,
-            "extensions": {EXTENSION: stored},
+            "extensions": {DRACO_EXTENSION: stored},
         }
 
     def _attribute(self, name: str, values: np.ndarray) -> int:
@@ -173,7 +190,7 @@ class GltfDocument:
     def _indices(self, indices: np.ndarray, vertices: int) -> int:
         data = indices.astype("<u2" if vertices < 65536 else "<u4")
         if self._compressed:
-            view = self._compressed_view(meshopt.encoded_faces(indices, vertices), data, "TRIANGLES")
+            view = self._compressed_view(encoded_faces(indices, vertices), data, "TRIANGLES")
         else:
             view = self._view(data.tobytes(), _ELEMENT_ARRAY_BUFFER)
         kind = _COMPONENT_TYPES[data.dtype.str[1:]]
@@ -181,7 +198,7 @@ class GltfDocument:
 
     def _vertex_view(self, values: np.ndarray) -> int:
         if self._compressed:
-            return self._compressed_view(meshopt.encoded_vertices(values), values, "ATTRIBUTES")
+            return self._compressed_view(encoded_vertices(values), values, "ATTRIBUTES")
         return self._view(values.tobytes(), _ARRAY_BUFFER)
 
     def _view(self, data: bytes, target: int | None = None) -> int:
@@ -192,7 +209,7 @@ class GltfDocument:
 
     def _compressed_view(self, encoded: bytes, values: np.ndarray, mode: str) -> int:
         """A view of the fallback buffer, which no file stores, with the compressed data that stand for it."""
-        self.use(meshopt.EXTENSION, required=True)
+        self.use(MESHOPT_EXTENSION, required=True)
         stride = values.itemsize * (values.shape[1] if values.ndim > 1 else 1)
         packed = {
             "buffer": 0,
@@ -207,7 +224,7 @@ class GltfDocument:
             entry["byteStride"] = stride
         entry["target"] = _ARRAY_BUFFER if mode == "ATTRIBUTES" else _ELEMENT_ARRAY_BUFFER
         self._decoded_bytes += values.nbytes + -values.nbytes % 4
-        return self.add("bufferViews", {**entry, "extensions": {meshopt.EXTENSION: packed}})
+        return self.add("bufferViews", {**entry, "extensions": {MESHOPT_EXTENSION: packed}})
 
     def _append(self, data: bytes) -> int:
         self._data += b"\0" * (-len(self._data) % 4)
@@ -256,3 +273,133 @@ class GltfDocument:
             image = self.add("images", {"bufferView": self._view(content), "mimeType": _MEDIA_TYPES[suffix]})
             self._pictures[id(picture)] = self.add("textures", {"sampler": 0, "source": image})
         return self._pictures[id(picture)]
+
+
+def tangents(surface: Surface) -> Float32[np.ndarray, "n 4"]:
+    """Unit tangents along growing u, orthogonal to the normals, with the sign of the bitangent as fourth component.
+
+    Sums over the faces at each vertex, after E. Lengyel, Foundations of Game Engine Development, volume 2, section 7.5.
+    Where the texture coordinates say nothing, any direction along the surface is taken.
+    """
+    if surface.uv is None:
+        raise ValueError("tangents follow texture coordinates; this surface has none")
+    p, uv = surface.vertices[surface.faces].astype(np.float64), surface.uv[surface.faces] * [1.0, -1.0]
+    e1, e2 = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    (x1, y1), (x2, y2) = (uv[:, 1] - uv[:, 0]).T, (uv[:, 2] - uv[:, 0]).T
+    area = x1 * y2 - x2 * y1
+    sign = np.sign(area)[:, None]
+    along_u = sign * (e1 * y2[:, None] - e2 * y1[:, None])
+    along_v = sign * (e2 * x1[:, None] - e1 * x2[:, None])
+    total = [_sums(values, surface.faces, len(surface.vertices)) for values in (along_u, along_v)]
+    n = surface.normals.astype(np.float64)
+    t = total[0] - n * (n * total[0]).sum(axis=1, keepdims=True)
+    length = np.linalg.norm(t, axis=1, keepdims=True)
+    axis = np.eye(3)[np.abs(n).argmin(axis=1)]
+    fallback = np.cross(n, axis)
+    t = np.where(length > 1e-12, t / np.maximum(length, 1e-12), fallback / np.linalg.norm(fallback, axis=1)[:, None])
+    hand = np.where((np.cross(n, t) * total[1]).sum(axis=1) < 0, -1.0, 1.0)
+    return np.column_stack([t, hand]).astype(np.float32)
+
+
+def _sums(values: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
+    out = np.zeros((count, 3))
+    for corner in range(3):
+        np.add.at(out, faces[:, corner], values)
+    return out
+
+
+def prepared(
+    arrays: dict[str, np.ndarray], faces: Integer[np.ndarray, "m 3"]
+) -> tuple[dict[str, np.ndarray], Integer[np.ndarray, "m 3"]]:
+    """Vertices and faces in the order in which they are used, their values rounded."""
+    count = len(arrays["POSITION"])
+    indices = np.ascontiguousarray(faces.reshape(-1), dtype=np.uint32)
+    ordered = np.zeros_like(indices)
+    meshoptimizer.optimize_vertex_cache(ordered, indices, len(indices), count)
+    _, first = np.unique(ordered, return_index=True)
+    used = ordered[np.sort(first)]
+    place = np.zeros(count, dtype=np.uint32)
+    place[used] = np.arange(len(used), dtype=np.uint32)
+    return {name: _rounded(name, values[used]) for name, values in arrays.items()}, place[ordered].reshape(-1, 3)
+
+
+def encoded_vertices(values: np.ndarray) -> bytes:
+    """Attribute data, one row a vertex, rows of a multiple of four bytes."""
+    meshoptimizer.encode_vertex_version(0)  # the only one that the extension allows
+    return bytes(meshoptimizer.encode_vertex_buffer(values))
+
+
+def encoded_faces(indices: Integer[np.ndarray, " n"], vertices: int) -> bytes:
+    """Indices of triangles."""
+    meshoptimizer.encode_index_version(1)
+    return bytes(meshoptimizer.encode_index_buffer(np.ascontiguousarray(indices, np.uint32), len(indices), vertices))
+
+
+def _rounded(name: str, values: np.ndarray) -> np.ndarray:
+    if name in ("NORMAL", "TANGENT"):
+        packed = np.zeros((len(values), 4), dtype="<i1")
+        packed[:, : values.shape[1]] = np.round(values * 127.0)
+        return packed
+    step = _STEPS[name]
+    return np.ascontiguousarray(np.round(values * step) / step, dtype="<f4")
+
+
+@dataclass(frozen=True, eq=False)
+class DracoMesh:
+    """One compressed primitive."""
+
+    data: bytes
+    attributes: Mapping[str, int]
+    """Draco's id of each glTF attribute."""
+    vertices: int
+    triangles: int
+    lower: Float32[np.ndarray, "3"]
+    """Bounds of the positions as they are decoded."""
+    upper: Float32[np.ndarray, "3"]
+
+
+def draco_mesh(arrays: Mapping[str, np.ndarray], faces: Int[np.ndarray, "m 3"]) -> DracoMesh:
+    """Compress one primitive; vertices and triangles may come back in another order.
+
+    Args:
+        arrays: glTF attributes by name, one row a vertex; POSITION at least.
+        faces: Triangles.
+
+    Raises:
+        UnavailableError: DracoPy is not installed.
+    """
+    try:
+        import DracoPy
+    except ImportError as missing:
+        raise UnavailableError("Draco compression needs an optional library: pip install 'diorama[draco]'") from missing
+    positions = np.ascontiguousarray(arrays["POSITION"], dtype=np.float32)
+    extent = float(np.ptp(positions, axis=0).max())
+    data = DracoPy.encode(
+        positions,
+        np.ascontiguousarray(faces, dtype=np.uint32),
+        quantization_bits=int(np.clip(np.ceil(np.log2(max(extent, STEP_M) / STEP_M)), 8, 24)),
+        compression_level=LEVEL,
+        tex_coord=_double(arrays.get("TEXCOORD_0")),
+        normals=_double(arrays.get("NORMAL")),
+        tex_coord_quantization_bits=UV_BITS,
+        normal_quantization_bits=NORMAL_BITS,
+        generic_attributes={_OWN[name]: _plain(values) for name, values in arrays.items() if name in _OWN} or None,
+    )
+    decoded = DracoPy.decode(data)
+    points = np.asarray(decoded.points, dtype=np.float32)
+    kinds = {DracoPy.AttributeType.POSITION: "POSITION", DracoPy.AttributeType.NORMAL: "NORMAL"}
+    kinds[DracoPy.AttributeType.TEX_COORD] = "TEXCOORD_0"
+    kinds_by_id = {number: name for name, number in _OWN.items()}
+    ids = {
+        kinds.get(a["attribute_type"], kinds_by_id.get(a["unique_id"], "")): a["unique_id"] for a in decoded.attributes
+    }
+    return DracoMesh(data, ids, len(points), len(decoded.faces), points.min(axis=0), points.max(axis=0))
+
+
+def _plain(values: np.ndarray | None) -> np.ndarray | None:
+    return None if values is None else np.ascontiguousarray(values, dtype=np.float32)
+
+
+def _double(values: np.ndarray | None) -> np.ndarray | None:
+    """In the precision that DracoPy takes these in."""
+    return None if values is None else np.ascontiguousarray(values, dtype=np.float64)

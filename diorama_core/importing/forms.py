@@ -5,7 +5,8 @@ A form is told by what is in the file, not by its name alone. What no form tells
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,10 +21,9 @@ from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.measured_types import MeasuredRoom
 from diorama_core.importing.part import Part
 from diorama_core.importing.parts import parts_of_gltf, parts_of_usd, split_scene
-from diorama_core.importing.point_cloud import PointCloud
+from diorama_core.importing.point_cloud import PointCloud, points_of_mesh
 from diorama_core.importing.point_files import POINT_FORMS, PointForm, read_points
 from diorama_core.importing.roomplan import read_room_plan
-from diorama_core.importing.scan_mesh import scan_in
 from diorama_core.importing.scene_frame import frame_of_scene
 from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.importing.usd import read_marked_usd
@@ -31,6 +31,26 @@ from diorama_core.io.contained import content_of, unpacked
 from diorama_core.io.file_heads import FileHead, head_of, what_else
 from diorama_core.library.ingest.models import form_of, read_model
 from diorama_core.progress import Progress
+
+MIN_SPAN_M, MIN_HEIGHT_M = 2.0, 1.5
+"""Smallest room: the shorter side of its plan, and its height."""
+MIN_TRIANGLES = 2000
+LONG_EDGE_M = 0.6
+"""Scanners make few larger triangles than this, unless the mesh was reduced."""
+MIN_SMALL = 0.85
+"""Share of the area in smaller triangles."""
+EXACT_COS, EXACT_M, MIN_PLANE_M2 = 1e-3, 2e-3, 0.3
+"""Steps of normals and offsets within which modelled faces lie in one plane, and the least such plane that counts."""
+MAX_EXACT = 0.35
+"""Share of the area in exact planes: a reduced scan has large triangles, but none of them are level or upright."""
+MIN_SHARE = 0.7
+"""Smallest share of the file's area in one scan; chairs modelled beside it leave less."""
+SAID_NOTHING = re.compile(
+    r"^(mesh|node|object|obj|geometry|geom|default|scan|chunk|group|root|scene|world|model|textured|output|material|mat|"
+    r"polygon|part|piece|sub|tile|raw|export|[0-9a-f]{6,}|[\d_.\s-])*$",
+    re.IGNORECASE,
+)
+"""Names that programs give: no word in them is anybody's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +62,8 @@ class SceneParts:
 
 
 _SCENES = "GLB, USD, Sweet Home 3D, OBJ"
+
+
 Content = MarkedFile | MeasuredRoom | PointCloud | SceneParts
 
 
@@ -181,9 +203,15 @@ def _is_model(*names: str) -> Callable[[FileHead], bool]:
 
 
 MAX_LOOKED_AT = 64_000_000
+
+
 MAX_ROOMS = 200
 """Files of a folder that are looked at."""
+
+
 OBJECTS = "Diorama's own comes back as it was; else floor, walls and objects, or a scan"
+
+
 SCENE_FORMS = (
     SceneForm("glTF", ".glb, .gltf", OBJECTS, _is_model("glTF"), _gltf),
     SceneForm("Sweet Home 3D", ".sh3d", "its walls, floors and furniture, level by level",
@@ -197,8 +225,47 @@ SCENE_FORMS = (
               _is_model("OBJ", "FBX", "Collada", "3DS", "OFF", "STL"), _model),
 )  # fmt: skip
 """The first that tells a file or folder is its form."""
+
+
 SUFFIXES = (
     *dict.fromkeys(s for form in SCENE_FORMS for s in form.files.split(", ") if s.startswith(".") and " " not in s),
     ".zip",
 )
 """Endings of files that may be opened; their content decides."""
+
+
+def scan_in(parts: Sequence[Part]) -> PointCloud | None:
+    """The points of a scan, where the parts of a file are one; None where they are modelled.
+
+    Args:
+        parts: in the world, +Z up, metres.
+    """
+    meshes = [p.whole for p in parts]
+    if not meshes:
+        return None
+    largest = max(range(len(parts)), key=lambda k: meshes[k].area)
+    nameless = all(SAID_NOTHING.match(p.name) for p in parts)
+    whole = trimesh.util.concatenate(meshes) if nameless and len(meshes) > 1 else meshes[largest]
+    if whole.area < MIN_SHARE * sum(m.area for m in meshes) or not is_scanned(whole):
+        return None
+    return PointCloud(points_of_mesh(whole), np.array([0.0, 0.0, 1.0]), ("the mesh was read as a scan of a room",))
+
+
+def is_scanned(mesh: trimesh.Trimesh) -> bool:
+    """Whether a mesh is as large as a room and made of small triangles all over."""
+    x, y, height = mesh.extents
+    if min(x, y) < MIN_SPAN_M or height < MIN_HEIGHT_M or len(mesh.faces) < MIN_TRIANGLES:
+        return False
+    corners = mesh.triangles
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    small = float(mesh.area_faces[longest < LONG_EDGE_M].sum() / max(mesh.area, 1e-12))
+    return small > MIN_SMALL or _exact_share(mesh) < MAX_EXACT
+
+
+def _exact_share(mesh: trimesh.Trimesh) -> float:
+    """Share of the area that lies in exact planes of some size."""
+    offsets = (mesh.face_normals * mesh.triangles_center).sum(axis=1)
+    keys = np.column_stack([np.round(mesh.face_normals / EXACT_COS), np.round(offsets / EXACT_M)])
+    _, which = np.unique(keys, axis=0, return_inverse=True)
+    areas = np.bincount(which.reshape(-1), mesh.area_faces)
+    return float(areas[areas > MIN_PLANE_M2].sum() / max(mesh.area, 1e-12))

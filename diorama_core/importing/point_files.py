@@ -1,19 +1,27 @@
 """Measured points: clouds in PLY, LAS, LAZ, E57, PCD, text and arrays, Gaussian splats, and scanner apps' folders.
 
 LAS and LAZ need laspy, E57 needs pye57 (extra `scan`). `POINT_FORMS` is the table of what is read.
+
+Gaussian splats as points: those that are plainly there. Faint ones and huge ones float around what was filmed.
+
+PLY as Kerbl et al., 3D Gaussian Splatting (2023), write it (opacity as a logit, scales as logarithms), and `.splat`
+(32 bytes a splat).
 """
 
 from __future__ import annotations
 
 import io
+import re
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 import trimesh
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
 from diorama_core.importing.array_clouds import is_array_cloud, is_float_dump, read_array_cloud, read_float_dump
@@ -21,17 +29,142 @@ from diorama_core.importing.cloud_units import likely_unit
 from diorama_core.importing.data_set_frames import DATA_SET_FORMS
 from diorama_core.importing.depth_frames import FRAME_FORMS, UP_Y, UP_Z, FrameForm, cloud_of_frames
 from diorama_core.importing.point_cloud import MAX_POINTS, MIN_POINTS, PointCloud, in_metres, points_of_mesh, unit_note
-from diorama_core.importing.splats import SPLAT, is_splat_ply, read_splat_ply, read_splats
-from diorama_core.importing.text_clouds import TEXT_SUFFIXES, is_text_cloud, read_pcd, read_text_cloud
 from diorama_core.io.bounded import megabytes, read_bytes, shortened
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.file_heads import FileHead, head_of
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.references import GuardedResolver, References
 
+MIN_OPACITY = 0.1
+MAX_SCALE = 20.0
+"""Times the usual splat's largest side: larger ones are sky and fog."""
+SPLAT = np.dtype([("at", "<f4", 3), ("scale", "<f4", 3), ("colour", "u1", 4), ("turn", "u1", 4)])
+_TYPES = {
+    "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
+    "uint16": "u2", "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4",
+    "double": "f8", "float64": "f8",
+}  # fmt: skip
+
+
+def is_splat_ply(head: bytes) -> bool:
+    """Whether a PLY's heading names what only splats have."""
+    heading = head[: head.find(b"end_header")]
+    return head.startswith(b"ply") and b" opacity" in heading and b" scale_0" in heading
+
+
+def read_splat_ply(path: Path) -> Float[np.ndarray, "n 3"]:
+    """The centres of the splats that are plainly there.
+
+    Raises:
+        InputError: the file is cut off or not written plainly.
+    """
+    rows = _vertices(path)
+    scales = np.exp(np.column_stack([rows[f"scale_{k}"] for k in range(3)]).astype(np.float64))
+    points = np.column_stack([rows[axis] for axis in "xyz"]).astype(np.float64)
+    opacity = 1.0 / (1.0 + np.exp(-np.clip(rows["opacity"].astype(np.float64), -60.0, 60.0)))
+    return points[_plain(opacity, scales)]
+
+
+def read_splats(path: Path) -> Float[np.ndarray, "n 3"]:
+    """The centres of the splats of a `.splat` file that are plainly there."""
+    rows = np.fromfile(path, SPLAT, count=path.stat().st_size // SPLAT.itemsize)
+    return rows["at"].astype(np.float64)[_plain(rows["colour"][:, 3] / 255.0, rows["scale"].astype(np.float64))]
+
+
+def _plain(opacity: Float[np.ndarray, "n"], scales: Float[np.ndarray, "n 3"]) -> Bool[np.ndarray, "n"]:
+    largest = scales.max(axis=1)
+    is_visible = (opacity >= MIN_OPACITY) & np.isfinite(largest)
+    usual = float(np.median(largest[is_visible])) if is_visible.any() else 0.0
+    return is_visible & (largest <= MAX_SCALE * usual)
+
+
+def _vertices(path: Path) -> np.ndarray:
+    """The vertices of a PLY, by property."""
+    with path.open("rb") as stream:
+        heading = b""
+        while not heading.endswith(b"end_header\n") and len(heading) < 65_536:
+            line = stream.readline(4096)
+            if not line:
+                break
+            heading += line.replace(b"\r\n", b"\n")
+        lines = heading.decode("ascii", "replace").split("\n")
+        kind = next((line.split()[1] for line in lines if line.startswith("format ")), "")
+        elements = [k for k, line in enumerate(lines) if line.startswith("element ")]
+        first = lines[elements[0]].split() if elements else []
+        if (
+            len(first) != 3
+            or first[1] != "vertex"
+            or kind not in ("ascii", "binary_little_endian", "binary_big_endian")
+        ):
+            raise InputError(f"{path.name} is no plain PLY of splats; export it uncompressed")
+        ends = elements[1] if len(elements) > 1 else len(lines)
+        properties = [line.split() for line in lines[elements[0] + 1 : ends] if line.startswith("property ")]
+        order = ">" if kind == "binary_big_endian" else "<"
+        types = np.dtype([(name, order + _TYPES[of]) for _, of, name in properties])
+        if kind == "ascii":
+            return np.loadtxt(stream, types, max_rows=int(first[2]), ndmin=1)
+        return np.fromfile(stream, types, count=int(first[2]))
+
+
+TEXT_SUFFIXES = (".xyz", ".pts", ".ptx", ".asc", ".txt", ".csv", ".xyzrgb", ".xyzn")
+LOOKED_AT = 40
+"""Lines that tell how a file is written."""
+_NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|(?i:nan))"
+_AXIS = re.compile(r"(?:pos(?:ition)?|coord|points?)?[_: ]?([xyz])(?:[ _\[(].*)?")
+"""Names of columns, as in X, pos_x, "y [m]"."""
+_ROW = re.compile(rf"^\s*{_NUMBER}(?:[\s,;]+{_NUMBER}){{2,}}\s*[,;]?\s*$")
+
+
+def is_text_cloud(text: str) -> bool:
+    """Whether a text's lines are rows of three numbers or more, after at most a few lines of another kind."""
+    lines = [line for line in text.splitlines()[:-1] or text.splitlines() if line.strip()][:LOOKED_AT]
+    rows = [bool(_ROW.match(line)) for line in lines]
+    return len(lines) >= 3 and sum(rows) >= 0.8 * len(rows) and all(rows[len(rows) // 2 :])
+
+
+def read_text_cloud(path: Path) -> Float[np.ndarray, "n 3"]:
+    """The points of a text file: the columns x, y and z where a heading names them, else the first three.
+
+    Raises:
+        InputError: there are no rows of numbers in it.
+    """
+    with path.open(encoding="utf-8-sig", errors="replace") as stream:
+        beginning = list(islice(stream, LOOKED_AT))
+    first = next((k for k, line in enumerate(beginning) if _ROW.match(line)), None)
+    if first is None:
+        raise InputError(f"{path.name} has no rows of three numbers; export the points as 'x y z' lines")
+    delimiter = next((d for d in (";", ",") if d in beginning[first]), None)
+    columns = _columns(beginning[first - 1] if first else "", delimiter)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        rows = np.loadtxt(
+            path, np.float64, comments=("#", "//"), delimiter=delimiter, skiprows=first, usecols=columns, ndmin=2,
+            encoding="utf-8-sig",
+        )  # fmt: skip
+    return np.asarray(rows, np.float64).reshape(-1, 3)
+
+
+def _columns(heading: str, delimiter: str | None) -> tuple[int, ...]:
+    words = [w.strip(" \t\r\n\"'/#").lower() for w in (heading.split(delimiter) if delimiter else heading.split())]
+    names = [match[1] if (match := _AXIS.fullmatch(word)) else "" for word in words]
+    return tuple(names.index(axis) for axis in "xyz") if {"x", "y", "z"} <= set(names) else (0, 1, 2)
+
+
+def read_pcd(path: Path) -> Float[np.ndarray, "n 3"]:
+    """The points of a PCD file in any of its three encodings."""
+    from diorama_core.io.large_libraries import o3d
+
+    cloud = o3d.io.read_point_cloud(str(path), format="pcd")
+    return np.asarray(cloud.points, np.float64).reshape(-1, 3)
+
+
 MESH_NAMES = ("raw.glb", "export.obj", "export_refined.obj", "textured_output.obj", "*.glb", "*.obj", "*.ply")
 """File names of a scanner app's mesh, likeliest first."""
+
+
 MAX_BYTES = 2_000_000_000
+
+
 OWN_PLY = b"comment Diorama: metres, +Z up"
 
 

@@ -1,13 +1,25 @@
-"""Boxes around what stands, lies and hangs in a scanned room, each with its back at the wall that it stands at."""
+"""Boxes around what stands, lies and hangs in a scanned room, each with its back at the wall that it stands at.
+
+Rugs in the points of a scan: places where the floor is a little higher, level, and rectangular.
+
+A rug is thinner than what `measured_cloud` leaves to the floor. It is seen where a scan is finer than the rug is thick;
+furniture on it hides a part, so that its rectangle need not be full, but no bare floor may be inside.
+
+Furniture apart from what lies on it, in the points of a scan.
+
+A board is a level that much of a thing's outline fills and above which little is. What is above it lies on it, unless
+it reaches from one side to the other, as backs of chairs and heads of beds do.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import cv2
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from scipy import ndimage
 from scipy.spatial import cKDTree
 from shapely.geometry import Polygon, box
@@ -17,8 +29,6 @@ from diorama_core.importing.measured_types import (
     MeasuredBox,
     MeasuredOpening,
 )
-from diorama_core.importing.scanned_rugs import scanned_rugs
-from diorama_core.importing.scanned_tops import apart_from_tops
 from diorama_core.library.taxonomy import CARRIED_KINDS, CATEGORIES, UNKNOWN, having
 from diorama_core.scene.types import yaw_rotation
 
@@ -51,6 +61,19 @@ GUESS = 0.4
 """Confidence in a kind that no word tells."""
 RUGS = having("rug")
 UNLIKELY = (UNKNOWN.name, *OPENING_CATEGORIES, "curtain", "rug")
+MAX_DEVIATION = 1.4826
+"""Standard deviations in a median absolute deviation of normal noise."""
+TOP_CELL_M = 0.05
+MIN_BOARD = 0.6
+"""Share of the outline that a board fills."""
+MAX_ABOVE = 0.45
+"""Share of the outline that may be filled at any height above it."""
+MIN_HEIGHT_M = 0.25
+"""Height of a board above the object's foot; lower ones are rugs, plinths and pedals."""
+MIN_ABOVE_M = 0.08
+REACHES_ALONG, REACHES_ACROSS = 0.78, 0.9
+"""Shares of the longer side, and of the shorter one unless about square, at which a part belongs to the object."""
+SQUARE = 0.75
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,3 +210,127 @@ def _kinds(where: Literal["floor", "surface", "ceiling"]) -> dict[str, float]:
     mounts = ("floor", "wall") if where == "floor" else (where,)
     also = CARRIED_KINDS if where == "surface" else frozenset[str]()
     return {c.name: 1.0 for c in CATEGORIES if c.name not in UNLIKELY and (c.mount in mounts or c.name in also)}
+
+
+@dataclass(frozen=True)
+class RugSettings:
+    """Finds the rug in points whose floor is at 0."""
+
+    min_height_m: float = 0.007
+    sigmas: float = 4.0
+    """Multiple of the floor's noise that a rug is higher."""
+    unlevel: float = 0.3
+    """Deviation of a rug's heights, as a share of its height: a floor that bends rises little by little."""
+    max_height_m: float = 0.06
+    standing_m: float = 0.3
+    """What has points between the height of a rug and this one stands there, and hides the rug."""
+    cell_m: float = 0.1
+    reach: int = 2
+    """Cells by which pieces of one rug grow before they meet: what stands on it hides so much."""
+    min_side_m: float = 0.5
+    min_points: int = 40
+    max_floor: float = 0.08
+    """Share of floor among the low points inside its rectangle."""
+
+
+SETTINGS = RugSettings()
+
+
+def scanned_rugs(points: Float[np.ndarray, "n 3"]) -> list[Float[np.ndarray, "_ 3"]]:
+    """Points of each rug, the largest first.
+
+    Args:
+        points: of the room, away from walls; the floor at 0, +Z up.
+    """
+    low = _free(points)
+    below = low[low[:, 2] <= 0, 2]
+    if len(below) < SETTINGS.min_points:
+        return []
+    noise_m = MAX_DEVIATION * float(np.median(-below))  # half of the floor's noise is below it
+    raised = low[:, 2] > max(SETTINGS.min_height_m, SETTINGS.sigmas * noise_m)
+    rugs = [p for p in _pieces(low, raised) if _is_rug(p, low[~raised], noise_m)]
+    return sorted(rugs, key=len, reverse=True)
+
+
+def _free(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
+    """Points at the floor where nothing stands."""
+    points = points[points[:, 2] < SETTINGS.standing_m]
+    if not len(points):
+        return points
+    cells = np.floor((points[:, :2] - points[:, :2].min(axis=0)) / SETTINGS.cell_m).astype(int)
+    grid = np.zeros(cells.max(axis=0) + 1, bool)
+    low = points[:, 2] < SETTINGS.max_height_m
+    grid[tuple(cells[~low].T)] = True
+    return points[low & ~grid[tuple(cells.T)]]
+
+
+def _pieces(low: Float[np.ndarray, "n 3"], raised: Bool[np.ndarray, " n"]) -> Iterator[Float[np.ndarray, "_ 3"]]:
+    """Raised points in groups that are apart from each other."""
+    cells = np.floor((low[:, :2] - low[:, :2].min(axis=0)) / SETTINGS.cell_m).astype(int)
+    grid = np.zeros(cells.max(axis=0) + 1, bool)
+    grid[tuple(cells[raised].T)] = True
+    grown = ndimage.binary_dilation(grid, np.ones((3, 3), bool), iterations=SETTINGS.reach)
+    labels, count = ndimage.label(grown)
+    which = np.where(raised, labels[tuple(cells.T)], 0)
+    for number in range(count):
+        piece = low[which == number + 1]
+        level = float(np.median(piece[:, 2]))
+        yield piece[np.abs(piece[:, 2] - level) < level / 2]  # without what stands on it
+
+
+def _is_rug(piece: Float[np.ndarray, "n 3"], floor: Float[np.ndarray, "m 3"], noise_m: float) -> bool:
+    if len(piece) < SETTINGS.min_points:
+        return False
+    height = float(np.median(piece[:, 2]))
+    rectangle = cv2.minAreaRect(piece[:, :2].astype(np.float32))
+    if min(rectangle[1]) < SETTINGS.min_side_m or piece[:, 2].std() > max(SETTINGS.unlevel * height, 1.5 * noise_m):
+        return False
+    corners = cv2.boxPoints(rectangle)
+    near = floor[((floor[:, :2] > corners.min(axis=0)) & (floor[:, :2] < corners.max(axis=0))).all(axis=1), :2]
+    inside = sum(cv2.pointPolygonTest(corners, (float(x), float(y)), False) > 0 for x, y in near)
+    return inside <= SETTINGS.max_floor * (inside + len(piece))
+
+
+def apart_from_tops(points: Float[np.ndarray, "n 3"]) -> list[Float[np.ndarray, "_ 3"]]:
+    """The points of a thing, and those of each thing that lies on it; all of them together where nothing does.
+
+    Args:
+        points: +Z up, along the room's axes.
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    cells = np.floor((points - low) / TOP_CELL_M).astype(int)
+    counts = cells.max(axis=0) + 1
+    grid = np.zeros(counts, bool)
+    grid[tuple(cells.T)] = True
+    board = _board(grid)
+    if board is None or (high[2] - low[2]) - (board + 1) * TOP_CELL_M < MIN_ABOVE_M:
+        return [points]
+    above = grid.copy()
+    above[:, :, : board + 2] = False
+    labels, count = ndimage.label(above, np.ones((3, 3, 3)))
+    if not count or any(_reaches(labels == k + 1) for k in range(count)):
+        return [points]
+    which = labels[tuple(cells.T)]
+    return [points[which == 0], *(points[which == k + 1] for k in range(count))]
+
+
+def _board(grid: Bool[np.ndarray, "x y z"]) -> int | None:
+    """The highest level that fills much of the outline, all levels above it filling little."""
+    area = grid.any(axis=2).sum()
+    # A board may lie on the border of two levels, and its edge hides what is right below.
+    level = np.array([grid[:, :, k : k + 2].any(axis=2).sum() for k in range(grid.shape[2])]) / max(area, 1)
+    boards = np.flatnonzero(level >= MIN_BOARD)
+    if not len(boards) or boards[-1] * TOP_CELL_M < MIN_HEIGHT_M:
+        return None
+    board = int(boards[-1])
+    return board if (level[board + 3 :] <= MAX_ABOVE).all() else None
+
+
+def _reaches(part: Bool[np.ndarray, "x y z"]) -> bool:
+    """Whether a part goes from one side of the thing nearly to the other."""
+    sides = part.shape[:2]
+    for axes, side in zip(((1, 2), (0, 2)), sides, strict=True):
+        share = (np.ptp(np.flatnonzero(part.any(axis=axes))) + 1) / side
+        if share >= (REACHES_ALONG if side >= SQUARE * max(sides) else REACHES_ACROSS):
+            return True
+    return False

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.arrangement.noise import ObservationNoise
+from diorama_core.arrangement.support_hypotheses import ObservationNoise
 from diorama_core.arrangement.surfaces import is_soft, misfit, object_surfaces
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import part_overlaps

@@ -10,8 +10,7 @@ from jaxtyping import Bool, Float
 from diorama_core.geometry.sat import pair_axes, place_bodies
 from diorama_core.layout import gradients
 from diorama_core.layout.gradients import BoxPairs, near_pairs
-from diorama_core.layout.problem.footing import reach_of
-from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.problem.problem import Problem, build_problem, reach_of
 from diorama_core.layout.problem.volumes import Volumes, contact_templates
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Scene

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
+import io
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import cache, lru_cache
 from pathlib import Path
@@ -13,6 +15,7 @@ from pickle import PicklingError
 import numpy as np
 import platformdirs
 import trimesh
+from PIL import Image
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.bounded import parse_json
@@ -20,12 +23,12 @@ from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import derived
 from diorama_core.io.glb import whole_glb
 from diorama_core.library import furniture, taxonomy
-from diorama_core.library.cached_pictures import scene_with_pictures
-from diorama_core.library.furniture.geometry_key import geometry_key
+from diorama_core.library.furniture.geometry_key import code_key, geometry_key
 from diorama_core.library.furniture.latest import built_once
-from diorama_core.library.furniture.materials import Material
+from diorama_core.library.furniture.materials import Material, picture_bytes
 from diorama_core.library.furniture.measures import MARK, is_made, made_by_id
-from diorama_core.library.furniture.model import Design, mesh_of
+from diorama_core.library.furniture.model import Design, mesh_of, scene_of
+from diorama_core.library.furniture.roles import with_roles
 from diorama_core.library.furniture.solids import Solid
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
@@ -33,11 +36,14 @@ from diorama_core.library.taxonomy import column
 
 GLB_VERSION = 1
 """Version of the models' files: raise it when what `_glb` writes for the same parts changes."""
-
 BULK_DENSITY: Mapping[str, float] = column("density")
 """Kilograms per cubic metre of bounding box: a rough guess for physics, from weighing catalogues' furniture."""
 SCENE_BYTES = 256e6
 """Bytes of the arrays of models that stay in memory."""
+PAINTED_AT_ONCE = "plain"
+"""Pictures of this kind are of one colour: nothing is gained by caching them."""
+_ENDS = (b"\xff\xd9", b"IEND\xaeB`\x82")
+"""Last bytes of whole JPEG and PNG files."""
 
 
 def default_cache_dir() -> Path:
@@ -234,3 +240,39 @@ def _surfaces_from_json(data: bytes) -> tuple[SupportSurface, ...]:
         )
         for row in parse_json(data, "support surfaces", LibraryError)
     )
+
+
+def scene_with_pictures(solids: Iterable[tuple[Material, Solid]], folder: Path) -> trimesh.Scene:
+    """`scene_of` with roles, the materials' pictures from their files in a folder.
+
+    Args:
+        solids: One for each material.
+        folder: Where pictures are cached; without access to it they are painted each time.
+    """
+    solids = list(solids)
+    unpainted = [(replace(material, kind=PAINTED_AT_ONCE), solid) for material, solid in solids]
+    scene = with_roles(scene_of(unpainted), [material for material, _ in solids])
+    for mesh, (material, _) in zip(scene.geometry.values(), solids, strict=True):
+        if material.kind != PAINTED_AT_ONCE:
+            picture = Image.open(io.BytesIO(cached_picture(material, folder)), formats=("JPEG", "PNG"))
+            picture.load()  # as in `with_roles`
+            mesh.visual.material.baseColorTexture = picture
+    return scene
+
+
+@lru_cache(maxsize=512)
+def cached_picture(material: Material, folder: Path) -> bytes:
+    """`picture_bytes` from its file, which is renewed with the material and the code that paints."""
+    name = hashlib.sha256(f"{_code()} {material.name} {material.kind} {material.colour}".encode()).hexdigest()[:32]
+    return derived(folder / f"{name}.jpg", lambda: picture_bytes(material), _whole)
+
+
+@cache
+def _code() -> str:
+    return code_key(picture_bytes)
+
+
+def _whole(data: bytes) -> bytes:
+    if not data.endswith(_ENDS):
+        raise ValueError("the picture is cut off")
+    return data

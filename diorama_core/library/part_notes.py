@@ -1,6 +1,6 @@
 """Notes on one part of a model that is not built in: its role, its joint, and along which sides it stretches.
 
-An author writes them as extras of glTF nodes (`ingest.gltf_extras`). A library's own GLB files carry them as extras of
+An author writes them as extras of glTF nodes (`ingest.repair`). A library's own GLB files carry them as extras of
 meshes, in the shape's canonical frame.
 """
 

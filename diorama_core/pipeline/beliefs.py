@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diorama_core.arrangement.noise import ObservationNoise
+from diorama_core.arrangement.support_hypotheses import ObservationNoise
 from diorama_core.arrangement.supports import DecidedSupports
 from diorama_core.artefacts import Inputs, ObjectGeometry, PosedCandidates
 from diorama_core.library.record import ShapeLibrary, record_of

@@ -6,22 +6,36 @@ plan, each restricted to the artefacts it wants. An artefact that the caller giv
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import Any
+
+import numpy as np
 
 from diorama_core.architecture.along_sight import drawn_before_walls, snap_mounted_objects
 from diorama_core.architecture.walls.passages import without_openings
+from diorama_core.arrangement.explain import SCALE, reasons_of_change
 from diorama_core.arrangement.out_of_reach import left_where_seen
-from diorama_core.artefacts import Inputs
+from diorama_core.arrangement.support_hypotheses import ObservationNoise
+from diorama_core.artefacts import (
+    ArchitectureEstimate,
+    DetectedObject,
+    Inputs,
+    ObjectGeometry,
+    PosedCandidates,
+    Reason,
+    SceneGraph,
+)
 from diorama_core.layout.clear_shapes import clear_shapes
+from diorama_core.library.labels import is_named, meanings, with_article
+from diorama_core.library.record import ShapeLibrary, record_of
+from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
 from diorama_core.perception.graph.geometric import with_graph
-from diorama_core.pipeline.assemble import assemble
 from diorama_core.pipeline.beliefs import with_beliefs
 from diorama_core.pipeline.beside import looking_ahead
-from diorama_core.pipeline.findings import drawing, finding
-from diorama_core.pipeline.reasons import reasons_of_build
+from diorama_core.pipeline.findings import drawing, finding, graph_sentence
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.scene_steps import (
     appearance,
@@ -44,6 +58,7 @@ from diorama_core.pipeline.scene_steps import (
 from diorama_core.pipeline.stages import ProposalStages, Stages
 from diorama_core.pipeline.steps import (
     Artefacts,
+    Corrected,
     Correction,
     Derivation,
     LaidOut,
@@ -52,8 +67,161 @@ from diorama_core.pipeline.steps import (
     Step,
 )
 from diorama_core.progress import SILENT, Progress
-from diorama_core.retrieval.seen_kinds import with_seen_kinds
+from diorama_core.retrieval.seen_kinds import as_it_looks, with_seen_kinds
 from diorama_core.retrieval.word_senses import with_word_senses
+from diorama_core.scene.support import check_scene
+from diorama_core.scene.types import Scene, SceneObject
+
+
+def assemble(
+    objects: tuple[DetectedObject, ...],
+    geometry: ObjectGeometry,
+    architecture: ArchitectureEstimate,
+    posed: tuple[PosedCandidates, ...],
+    library: ShapeLibrary,
+    colours: Mapping[str, tuple[float, float, float]],
+) -> Scene:
+    """The scene before layout optimisation: every object in its best candidate's pose, in its colour of the photo.
+
+    Objects without candidates are left out, and objects on them are reassigned to their supporter.
+
+    Args:
+        objects: what was found in the photo, with masks.
+        geometry: the objects' cuboids, the camera, and what supports what.
+        architecture: the room.
+        posed: candidates in their poses.
+        library: where shapes come from.
+        colours: sRGB 0 to 1, by object id.
+    """
+    candidates: Mapping[str, PosedCandidates] = {p.object_id: p for p in posed if p.candidates}
+    items = tuple(_scene_object(o, candidates[o.id], library, colours.get(o.id)) for o in objects if o.id in candidates)
+    ids = {item.id for item in items} | {p.id for p in architecture.architecture.planes}
+    parent_of = {edge.child: edge.parent for edge in architecture.supports}
+    supports = []
+    for edge in architecture.supports:
+        parent: str | None = edge.parent
+        while parent is not None and parent not in ids:
+            parent = parent_of.get(parent)
+        if edge.child in ids and parent is not None:
+            supports.append(replace(edge, parent=parent))
+    scene = Scene(
+        camera=geometry.camera, architecture=architecture.architecture, objects=items, supports=tuple(supports)
+    )
+    check_scene(scene)
+    return scene
+
+
+def _scene_object(
+    item: DetectedObject,
+    posed: PosedCandidates,
+    library: ShapeLibrary,
+    colour: tuple[float, float, float] | None,
+) -> SceneObject:
+    best = posed.candidates[0]
+    kind = record_of(library, best.shape_id).category  # a chair that looks like an office chair is one
+    category = kind if item.category == UNKNOWN.name or kind in meanings(item.label, item.category) else item.category
+    return SceneObject(
+        id=item.id,
+        label=category if item.label == UNKNOWN.name else item.label,
+        category=category,
+        shape_id=best.shape_id,
+        shape_size_m=best.shape_size_m,
+        pose=best.pose,
+        candidates=posed.candidates,
+        mask_id=item.mask_id,
+        box_px=item.box,
+        confidence=posed.confidence,
+        colour=colour,
+    )
+
+
+def reasons_of_build(
+    given: Inputs,
+    inputs: Inputs,
+    objects: tuple[DetectedObject, ...],
+    geometry: ObjectGeometry,
+    graph: SceneGraph | None,
+    posed: Sequence[PosedCandidates],
+    noise: ObservationNoise,
+    corrected: Corrected,
+    settled: LaidOut,
+    refined: LaidOut,
+) -> tuple[Reason, ...]:
+    """The reasons for everything that was decided about the objects of the scene, by object.
+
+    Args:
+        given: what the user gave.
+        inputs: the same, with what networks added.
+        objects: what was outlined.
+        geometry: cuboids, with the reasons of the stage that measured them.
+        graph: what holds up what, where a stage decided that.
+        posed: candidates, with the reasons of the stage that posed them.
+        noise: of observed positions.
+        corrected: the scene before its layout, with the reasons of the rules that changed it.
+        settled: the scene after the layout.
+        refined: the scene after the refinement.
+    """
+    named_by = "you" if given.boxes or given.instances is not None else "the detector"
+    scene, kinds = refined.scene, {item.id: item.category for item in refined.scene.objects}
+    reasons = [r for o in objects if o.id in kinds for r in _of_kind(o, kinds[o.id], named_by)]
+    reasons += [r for p in posed for r in p.reasons or ()]
+    reasons += geometry.reasons or ()
+    reasons += _of_depth(inputs, geometry, noise) + _of_supports(graph, scene)
+    reasons += corrected.reasons
+    reasons += reasons_of_change(corrected.scene, settled.scene, "layout", "it rests on something, clear of the others")
+    reasons += reasons_of_change(settled.scene, scene, "refinement", "its outline fits the photo better there")
+    order = {item.id: k for k, item in enumerate(scene.objects)}
+    return tuple(sorted((r for r in reasons if r.object_id in order), key=lambda r: order[r.object_id]))
+
+
+def _of_kind(item: DetectedObject, kind: str, named_by: str) -> list[Reason]:
+    """How much likelier its word, its picture and its place make a kind than kinds are on average."""
+    named, reasons = is_named(item.label), []
+    by_word: Mapping[str, float] = meanings(item.label, item.category)
+    if named and kind in by_word:
+        nats = float(np.log(by_word[kind] * len(CATEGORIES)))
+        reasons.append(_kind_reason(item, "word", nats, f"named “{item.label}” by {named_by}"))
+    seen = dict(item.looks_like)
+    if seen:
+        share = seen.get(kind, 0.0)
+        nats = float(np.log(max(share, SCALE.rare) * len(seen)))
+        looks = f"looks like {with_article(kind)}" if nats > 0 else f"hardly looks like {with_article(kind)}"
+        reasons.append(_kind_reason(item, "picture", nats, f"it {looks} in the photo"))
+    before, after = as_it_looks(by_word, item.looks_like, named), dict(item.meanings)
+    if kind in after and before.get(kind, 0.0) > 0:
+        nats = float(np.log(max(after[kind], SCALE.rare) / max(before[kind], SCALE.rare)))
+        fits = "fit" if nats > 0 else "speak against"
+        reasons.append(_kind_reason(item, "box", nats, f"its place and size in the photo {fits} {with_article(kind)}"))
+    return reasons
+
+
+def _kind_reason(item: DetectedObject, term: str, nats: float, sentence: str) -> Reason:
+    return Reason(item.id, "kind", term, nats, "nats", sentence)
+
+
+def _of_depth(inputs: Inputs, geometry: ObjectGeometry, noise: ObservationNoise) -> list[Reason]:
+    """Where distances were measured, that places them."""
+    if inputs.depth_m is None:
+        return []
+    nats = min(0.5 * (SCALE.change / noise.along) ** 2, SCALE.max_nats)
+    word = "depth was measured there"
+    return [Reason(c.object_id, "place", "depth", nats, "nats", word) for c in geometry.cuboids]
+
+
+def _of_supports(graph: SceneGraph | None, scene: Scene) -> list[Reason]:
+    """How sure the graph is of what holds an object, where it still is what the graph says."""
+    if graph is None:
+        return []
+    parents = {edge.child: edge.parent for edge in scene.supports}
+    roles = {p.id: p.role for p in scene.architecture.planes}
+    reasons = []
+    for edge, score in zip(graph.supports, graph.scores, strict=True):
+        now = parents.get(edge.child)
+        if now is not None and edge.parent in (now, roles.get(now)):
+            share = float(np.clip(score, SCALE.rare, 1.0 - SCALE.rare))
+            nats = float(np.log(share / (1.0 - share)))
+            reasons.append(Reason(edge.child, "support", "graph", nats, "nats", graph_sentence(graph)))
+    return reasons
 
 
 def lacks_boxes(given: Inputs) -> bool:
@@ -68,8 +236,11 @@ def lacks_depth(given: Inputs) -> bool:
 
 LOOKS_AHEAD = "shapes"
 """The artefact whose stage loads what it will need while earlier steps leave a processor idle."""
+
+
 DEFAULTS: Artefacts = {"preview": None}
 """What a caller need not give."""
+
 
 PLAN: tuple[Step, ...] = (
     Derivation(lambda given: given.photo, ("given",), "photo"),

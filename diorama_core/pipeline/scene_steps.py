@@ -13,8 +13,13 @@ from diorama_core.architecture.room_extent import containing_room, without_floor
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.architecture.texture.refit import refitted_textures
 from diorama_core.arrangement.explain import SCALE, reasons_of_change
-from diorama_core.arrangement.noise import MEASURED, REASONED, ObservationNoise
-from diorama_core.arrangement.support_hypotheses import SupportEvidence, seen_below
+from diorama_core.arrangement.support_hypotheses import (
+    MEASURED,
+    REASONED,
+    ObservationNoise,
+    SupportEvidence,
+    seen_below,
+)
 from diorama_core.arrangement.support_terms import sentence_of
 from diorama_core.arrangement.supports import DecidedSupports, SupportChoice, with_decided_supports
 from diorama_core.artefacts import (

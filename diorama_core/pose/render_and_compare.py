@@ -18,9 +18,9 @@ from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import ROUND, Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.pose.hypotheses import Hypotheses, hypotheses_for, unlike_best
-from diorama_core.pose.levels import level_cost
 from diorama_core.pose.limits import SizeLimits, sides_log_of
 from diorama_core.pose.measured import MeasuredObject
+from diorama_core.pose.parameter_fit import level_cost
 from diorama_core.pose.posing_tasks import (
     PosedShape,
     PosingTask,

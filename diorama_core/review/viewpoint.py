@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from jaxtyping import Float
 
-from diorama_core.arrangement.noise import REASONED
+from diorama_core.arrangement.support_hypotheses import REASONED
 from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Scene, SceneObject
 

@@ -20,9 +20,8 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
 from diorama_core.training.adapting import adapted_detector, labelled_photos
-from diorama_core.training.export import export_detector, export_namer, export_outliner, score, write_card
+from diorama_core.training.export import export_detector, export_namer, export_outliner, join_namers, score, write_card
 from diorama_core.training.facings import FacingModel, as_settings, beginning, certificate, gathered
-from diorama_core.training.joined import join_namers
 from diorama_core.training.kind_evidence import train as train_evidence
 from diorama_core.training.picture_files import PictureFiles
 from diorama_core.training.pictures import category_names, make_pictures

@@ -6,9 +6,13 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+import onnx
 import torch
+from onnx import ModelProto, NodeProto, TensorProto, compose, helper, numpy_helper
 from torch import nn
 
+from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.recognition import BEST, RecognitionBench, run
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.form import MEASURED, VALUES
@@ -17,6 +21,10 @@ from diorama_core.models.onnx_export import write_graph
 from diorama_core.models.outliner import SIDE
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.perception.foundation.proposals import OwnDetection, names_of
+
+_INPUTS, _OUTPUTS = ("crops", "geometry"), ("kinds", "forms")
+_TINY = 1e-7
+"""Added to every probability before its logarithm."""
 
 
 def export_detector(network: nn.Module, path: Path) -> None:
@@ -58,3 +66,77 @@ def score(annotations: Path, photos: Path, recogniser: Recogniser) -> Recognitio
     """Boxes and names on every annotated photo."""
     routes = {"own": OwnDetection(recogniser, threshold=0.01, most=BEST)}
     return run(annotations, photos, routes, {"own": lambda photo, boxes: names_of(recogniser, photo, boxes)}, {})
+
+
+def join_namers(paths: Sequence[Path], output: Path) -> None:
+    """Write one graph with the inputs and outputs of a namer (`training.networks`), made of several.
+
+    Its logits are the logarithms of the mean probabilities of kinds and of the values of every attribute of form.
+    Namers that learnt before an attribute was there say nothing of it: they tell the first of `library.form.MEASURED`.
+
+    Args:
+        paths: graphs written by `export_namer`, of the same categories; the first tells all attributes.
+        output: where the joined graph goes.
+
+    Raises:
+        InputError: for a graph whose numbers are not those of attributes of form.
+    """
+    graphs = [onnx.load(path) for path in paths]
+    attributes = [_attributes(graph, path) for graph, path in zip(graphs, paths, strict=True)]
+    if attributes[0] != MEASURED:
+        raise InputError(
+            f"{paths[0]}: tells {', '.join(attributes[0])} only; begin with a namer that tells every attribute"
+        )
+    nodes: list[NodeProto] = []
+    values = [_array(np.array(_TINY, np.float32), "tiny")]
+    for k, graph in enumerate(graphs):
+        prefixed = compose.add_prefix(graph, f"{k}_").graph
+        for node in prefixed.node:
+            node.input[:] = [name.removeprefix(f"{k}_") if name in _prefixed(k) else name for name in node.input]
+        nodes += [*prefixed.node, *_probabilities(k, attributes[k])]
+        values += [
+            *prefixed.initializer,
+            _array(np.array([len(VALUES[name]) for name in attributes[k]], np.int64), f"{k}_sizes"),
+        ]
+    for name in ("kinds", *MEASURED):
+        parts = [f"{k}_{name}_probability" for k in range(len(graphs)) if name == "kinds" or name in attributes[k]]
+        nodes.append(helper.make_node("Mean", parts, [f"{name}_mean"]))
+    nodes.append(helper.make_node("Concat", [f"{name}_mean" for name in MEASURED], ["forms_mean"], axis=1))
+    for name in _OUTPUTS:
+        nodes += [
+            helper.make_node("Add", [f"{name}_mean", "tiny"], [f"{name}_positive"]),
+            helper.make_node("Log", [f"{name}_positive"], [name]),
+        ]
+    first = graphs[0]
+    whole = helper.make_graph(nodes, "namers", list(first.graph.input), list(first.graph.output), values)
+    model = helper.make_model(whole, opset_imports=first.opset_import, ir_version=first.ir_version)
+    onnx.checker.check_model(model)
+    write_atomically(output, model.SerializeToString())
+
+
+def _attributes(graph: ModelProto, path: Path) -> tuple[str, ...]:
+    """Which attributes of form a namer tells, by how many numbers it gives."""
+    forms = next(output for output in graph.graph.output if output.name == "forms")
+    width = forms.type.tensor_type.shape.dim[1].dim_value
+    ends = np.cumsum([len(VALUES[name]) for name in MEASURED]).tolist()
+    if width not in ends:
+        raise InputError(f"{path}: {width} numbers of form are those of no attributes; join namers made by `export`")
+    return MEASURED[: ends.index(width) + 1]
+
+
+def _prefixed(k: int) -> tuple[str, ...]:
+    return tuple(f"{k}_{name}" for name in _INPUTS)
+
+
+def _probabilities(k: int, attributes: Sequence[str]) -> list[NodeProto]:
+    """From the logits of one namer: all kinds together, each attribute of form for itself."""
+    parts = [f"{k}_{name}" for name in attributes]
+    return [
+        helper.make_node("Softmax", [f"{k}_kinds"], [f"{k}_kinds_probability"], axis=1),
+        helper.make_node("Split", [f"{k}_forms", f"{k}_sizes"], parts, axis=1),
+        *(helper.make_node("Softmax", [part], [f"{part}_probability"], axis=1) for part in parts),
+    ]
+
+
+def _array(value: np.ndarray, name: str) -> TensorProto:
+    return numpy_helper.from_array(value, name)

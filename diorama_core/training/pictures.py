@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import cv2
 import numpy as np
@@ -12,6 +14,7 @@ from jaxtyping import Float32, Int, Int8, Int32, UInt8
 from PIL import Image
 
 from diorama_core.errors import InputError, LibraryError, SceneError
+from diorama_core.io.atomic import write_atomically
 from diorama_core.library.form import MEASURED, form_at, value_indices
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import SILENT, Progress
@@ -20,7 +23,6 @@ from diorama_core.scene.values import ArrayValue
 from diorama_core.synthesis import sample_cameras
 from diorama_core.synthesis.cameras import CameraRanges
 from diorama_core.synthesis.truth import Studio
-from diorama_core.training.made_files import make_files
 from diorama_core.training.rooms import varied_room
 
 SIZE = (512, 384)
@@ -31,6 +33,7 @@ MIN_PIXELS = 85
 MIN_SIDE_PX = 8
 """Least side, of 512 x 384: what is smaller is background."""
 JPEG_QUALITY = 90
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,3 +165,33 @@ def _packed(pictures: tuple[LabelledPicture, ...]) -> bytes:
     buffer = io.BytesIO()
     np.savez(buffer, **arrays)  # type: ignore[arg-type]  # the keywords are names of arrays
     return buffer.getvalue()
+
+
+def make_files(
+    folder: Path,
+    items: Sequence[T],
+    name_of: Callable[[T], str],
+    made: Callable[[T], bytes],
+    progress: Progress = SILENT,
+) -> int:
+    """Make the files of some items that are not in the folder yet.
+
+    Args:
+        folder: Is made where it is not there.
+        items: Rooms' seeds, or shapes.
+        name_of: The name of an item's file.
+        made: Its content.
+        progress: Reported before each item; honours cancelling, and the next call goes on.
+
+    Returns:
+        The number of files made now.
+    """
+    count = 0
+    folder.mkdir(parents=True, exist_ok=True)
+    for k, item in enumerate(items):
+        target = folder / name_of(item)
+        progress.report(k / len(items), target.stem)
+        if not target.exists():
+            write_atomically(target, made(item))
+            count += 1
+    return count

@@ -21,8 +21,7 @@ from diorama_core.models.images import CROP_SIDE, FILL, MARGIN
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.views import StudioView, render_shape
 from diorama_core.scene.values import ArrayValue
-from diorama_core.training.made_files import make_files
-from diorama_core.training.pictures import category_names
+from diorama_core.training.pictures import category_names, make_files
 from diorama_core.training.rooms import any_colour
 
 SIDE = 112

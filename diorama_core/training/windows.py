@@ -20,8 +20,7 @@ from diorama_core.scene.values import ArrayValue
 from diorama_core.synthesis import sample_cameras
 from diorama_core.synthesis.truth import Studio
 from diorama_core.training.augment import photographed
-from diorama_core.training.made_files import make_files
-from diorama_core.training.pictures import CAMERAS, visible_boxes
+from diorama_core.training.pictures import CAMERAS, make_files, visible_boxes
 from diorama_core.training.rooms import varied_room
 
 SIZE = (512, 384)

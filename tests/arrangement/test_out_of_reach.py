@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.arrangement.noise import MEASURED, REASONED
 from diorama_core.arrangement.out_of_reach import left_where_seen
+from diorama_core.arrangement.support_hypotheses import MEASURED, REASONED
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene

@@ -9,10 +9,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.arrangement.noise import MEASURED, REASONED
-from diorama_core.arrangement.support_hypotheses import SupportEvidence, SupportHypothesis, support_hypotheses
+from diorama_core.arrangement.support_hypotheses import (
+    MEASURED,
+    REASONED,
+    ObservationNoise,
+    SupportEvidence,
+    SupportHypothesis,
+    support_hypotheses,
+)
 from diorama_core.arrangement.support_terms import TERMS, SupportWeights, fitted_weights, sentence_of
-from diorama_core.arrangement.supports import chosen_supports, with_decided_supports
+from diorama_core.arrangement.supports import (
+    STANDING_TERMS,
+    chosen_supports,
+    standing_walls,
+    wall_relation,
+    with_decided_supports,
+)
 from diorama_core.library.taxonomy import category
 from diorama_core.scene.types import Scene, Support
 from diorama_core.synthesis.layout_rooms import box_library
@@ -21,6 +33,7 @@ from tests.layout.small_rooms import Room
 
 LIBRARY = box_library()
 TABLE_TOP = float(LIBRARY.shape("table_0").size_m[2])
+DEPTH, _, HEIGHT = box_library().shape("cabinet_10").size_m
 
 
 def decided(scene: Scene, noise=MEASURED, **below) -> Scene:
@@ -155,3 +168,30 @@ def test_terms_are_told_in_plain_words() -> None:
     assert sentence_of("company", held) == "a cup is often on a table"
     assert sentence_of("usual place", held) == "a cup is usually on furniture"
     assert sentence_of("company", SupportHypothesis(Support("cup", "floor"), "floor", category("cup"))) == ""
+
+
+def walls_of_cabinet(room: Room, gap_m: float, yaw: float, noise: ObservationNoise) -> tuple[str, ...]:
+    """Those of a cabinet before the far wall of a room of 6 x 5 m, at x = 0."""
+    cabinet = room.put("cabinet_10", (0.0, 2.5 - DEPTH / 2 - gap_m, HEIGHT / 2), yaw=yaw)
+    scene = room.scene(camera=looking_north())
+    return standing_walls(scene, scene.object(cabinet), noise, fitted_weights().walls)
+
+
+@pytest.mark.parametrize("noise", [MEASURED, REASONED])
+def test_a_cabinet_with_its_back_at_a_wall_stands_against_it(room: Room, noise: ObservationNoise) -> None:
+    assert walls_of_cabinet(room, 0.0, -np.pi / 2, noise) == ("wall_2",)
+
+
+@pytest.mark.parametrize(("gap_m", "yaw"), [(1.0, -np.pi / 2), (0.15, np.deg2rad(-60.0))])
+def test_a_cabinet_away_from_a_wall_or_aslant_to_it_stands_free(room: Room, gap_m: float, yaw: float) -> None:
+    assert walls_of_cabinet(room, gap_m, yaw, MEASURED) == ()
+
+
+def test_weights_name_every_term() -> None:
+    assert all(set(weights) == set(STANDING_TERMS) for weights in fitted_weights().walls.values())
+
+
+def test_a_wall_that_ends_before_an_object_has_no_relation_to_it(room: Room) -> None:
+    cabinet = room.put("cabinet_10", (7.0, 2.0, HEIGHT / 2), yaw=-np.pi / 2)
+    scene = room.scene(camera=looking_north())
+    assert wall_relation(scene, scene.object(cabinet), scene.plane("wall_2"), MEASURED) is None

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_app.interaction.marquee import objects_in
+from diorama_app.interaction.gestures import objects_in
 from diorama_app.session.problem_checker import problems
 from diorama_core.editing import aligning as arranging
 from diorama_core.editing.clipboard import copied, pasted

@@ -6,9 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from PIL import Image
 
-from diorama_core.export.wavefront import MaterialFile, ObjText, hull_file, obj_file
+from diorama_core.export.wavefront import MaterialFile, ObjText, hull_file, index_rows, number_rows, obj_file
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 from diorama_core.library.ingest.models import read_model
 from diorama_core.render.appearance import Material, shape_surfaces
@@ -105,3 +108,30 @@ def test_a_textured_material_comes_back_in_its_colour(tmp_path: Path) -> None:
     assert back.material.colour == (1.0, 1.0, 1.0)
     assert back.material.texture is not None
     np.testing.assert_allclose(back.material.texture[..., :3], expected, atol=0.51)
+
+
+@given(arrays(np.float64, (7, 3), elements=st.floats(-1e4, 1e4)), st.integers(1, 6))
+def test_numbers_are_rounded_like_pythons(values: np.ndarray, decimals: int) -> None:
+    lines = number_rows("vn", values, decimals).decode().splitlines()
+    assert len(lines) == 7
+    for line, row in zip(lines, values, strict=True):
+        prefix, *words = line.split()
+        assert prefix == "vn"
+        assert all(len(w.partition(".")[2]) == decimals for w in words)
+        np.testing.assert_allclose([float(w) for w in words], row, atol=0.5001 * 10.0**-decimals)
+
+
+def test_columns_and_signs() -> None:
+    text = number_rows("v", np.array([[-0.25, 12.0, 0.0], [3.5, -1.0, 100.125]]), 2).decode()
+    assert [line.split() for line in text.splitlines()] == [
+        ["v", "-0.25", "12.00", "0.00"],
+        ["v", "3.50", "-1.00", "100.12"],
+    ]
+
+
+def test_nothing_is_no_text() -> None:
+    assert number_rows("v", np.zeros((0, 3)), 3) == b""
+
+
+def test_indices_follow_the_pattern() -> None:
+    assert index_rows("f %d//%d", np.array([[1, 2], [30, 4]])) == b"f 1//2\nf 30//4\n"

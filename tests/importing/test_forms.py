@@ -15,18 +15,15 @@ from scipy.spatial.transform import Rotation
 from diorama_core.errors import InputError
 from diorama_core.export import export_scene
 from diorama_core.importing.depth_frames import FRAME_FORMS, cloud_of_frames
-from diorama_core.importing.forms import SCENE_FORMS, SUFFIXES, SceneParts, told
+from diorama_core.importing.forms import SCENE_FORMS, SUFFIXES, SceneParts, scan_in, told
 from diorama_core.importing.measured_cloud import measured_cloud
 from diorama_core.importing.part import Part
 from diorama_core.importing.parts import joined_flat_parts
 from diorama_core.importing.point_cloud import PointCloud
-from diorama_core.importing.point_files import read_points
+from diorama_core.importing.point_files import is_text_cloud, read_points, read_splat_ply
 from diorama_core.importing.room import room_of
 from diorama_core.importing.room_by_shape import shell_planes, slab_role
-from diorama_core.importing.scan_mesh import scan_in
 from diorama_core.importing.scene_frame import frame_of_scene, likely_up
-from diorama_core.importing.splats import read_splat_ply
-from diorama_core.importing.text_clouds import is_text_cloud
 from diorama_core.io.file_heads import head_of
 from diorama_core.library.ingest.models import read_model
 from diorama_core.progress import Progress

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.arrangement.noise import MEASURED
+from diorama_core.arrangement.support_hypotheses import MEASURED
 from diorama_core.layout.clear_shapes import clear_shapes
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import part_overlaps

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import dataclasses
 import io
 import json
 import struct
@@ -15,9 +16,18 @@ import pytest
 import trimesh
 
 from diorama_core.errors import LibraryError
-from diorama_core.library.catalogue import BuiltInLibrary, built_in_library, default_cache_dir
-from diorama_core.library.furniture import designs
-from diorama_core.library.furniture.model import Design
+from diorama_core.library import catalogue, furniture
+from diorama_core.library.catalogue import (
+    BuiltInLibrary,
+    built_in_library,
+    cached_picture,
+    default_cache_dir,
+    scene_with_pictures,
+)
+from diorama_core.library.furniture import designs, materials
+from diorama_core.library.furniture.materials import picture_bytes
+from diorama_core.library.furniture.model import Design, built, scene_of
+from diorama_core.library.furniture.roles import with_roles
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import CATEGORIES
 
@@ -26,6 +36,7 @@ FREQUENT = {
     "chair": 8, "sofa": 6, "table": 8, "bed": 5, "bookshelf": 5, "cabinet": 5, "dresser": 5, "night stand": 5,
     "lamp": 5, "pillow": 4, "books": 4, "door": 4, "picture": 4,
 }  # fmt: skip
+DESIGN = next(d for d in furniture.designs() if d.id == "bed-channel-green")
 
 
 @pytest.fixture(scope="module")
@@ -202,3 +213,45 @@ def test_records_know_other_names_and_the_faces_that_touch() -> None:
     assert by_category["clock"].contact_faces[0] == "back"
     assert by_category["ceiling lamp"].contact_faces == ("top",)
     assert by_category["table"].contact_faces == ("bottom",)
+
+
+def test_a_shape_is_the_same_with_cached_pictures(tmp_path: Path) -> None:
+    solids = built(DESIGN)
+    painted = with_roles(scene_of(solids), [material for material, _ in solids])
+    for _ in range(2):
+        cached_picture.cache_clear()
+        kept = scene_with_pictures(solids, tmp_path)
+        assert list(kept.geometry) == list(painted.geometry)
+        for mesh, other in zip(kept.geometry.values(), painted.geometry.values(), strict=True):
+            assert np.array_equal(mesh.vertices, other.vertices)
+            assert mesh.metadata == other.metadata
+            ours, theirs = mesh.visual.material, other.visual.material
+            assert np.array_equal(np.asarray(ours.baseColorTexture), np.asarray(theirs.baseColorTexture))
+            assert (ours.name, ours.roughnessFactor) == (theirs.name, theirs.roughnessFactor)
+
+
+def test_a_picture_is_painted_once_and_again_when_cut_off(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    painted: list[str] = []
+
+    def paint(material: materials.Material) -> bytes:
+        painted.append(material.name)
+        return picture_bytes(material)
+
+    monkeypatch.setattr(catalogue, "picture_bytes", paint)
+    monkeypatch.setattr(catalogue, "_code", lambda: "as it is")
+    for _ in range(2):
+        cached_picture.cache_clear()
+        assert cached_picture(materials.OAK, tmp_path) == picture_bytes(materials.OAK)
+    assert painted == [materials.OAK.name]
+    (path,) = tmp_path.iterdir()
+    path.write_bytes(path.read_bytes()[:-20])
+    cached_picture.cache_clear()
+    assert cached_picture(materials.OAK, tmp_path) == picture_bytes(materials.OAK)
+    assert len(painted) == 2
+    # Another colour and another code are other pictures.
+    cached_picture(dataclasses.replace(materials.OAK, colour="#808080"), tmp_path)
+    monkeypatch.setattr(catalogue, "_code", lambda: "as it will be")
+    cached_picture.cache_clear()
+    cached_picture(materials.OAK, tmp_path)
+    assert len(painted) == 4
+    assert len(list(tmp_path.iterdir())) == 3

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.arrangement.noise import MEASURED, REASONED, ObservationNoise
-from diorama_core.arrangement.support_hypotheses import SupportHypothesis
+from diorama_core.arrangement.support_hypotheses import MEASURED, REASONED, ObservationNoise, SupportHypothesis
 from diorama_core.arrangement.supports import DecidedSupports, SupportChoice
 from diorama_core.artefacts import Cuboid, Inputs, LabelledBox, ObjectGeometry, PosedCandidates
 from diorama_core.library.taxonomy import category

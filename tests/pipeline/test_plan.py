@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from diorama_core.arrangement.explain import strongest
-from diorama_core.artefacts import Inputs, LabelledBox
+from diorama_core.artefacts import ArchitectureEstimate, Inputs, LabelledBox, PosedCandidates
 from diorama_core.editing.reconstructed import replaced
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.pipeline import plan
-from diorama_core.pipeline.plan import DEFAULTS, PLAN, evaluate
+from diorama_core.pipeline.plan import DEFAULTS, PLAN, assemble, evaluate
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.reconstruct_object import reconstruct_object
 from diorama_core.pipeline.run import Built
@@ -28,11 +28,22 @@ from diorama_core.progress import Progress
 from diorama_core.project.build import build_project
 from diorama_core.project.reasons import load_reasons
 from diorama_core.project.storage import Project
+from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.schema import scene_to_json
+from diorama_core.scene.types import Architecture, Candidate, Pose, Support
 from diorama_core.synthesis.layout_rooms import box_library
+from tests.primitives import PrimitiveLibrary
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 LIBRARY = box_library()
+PRIMITIVES = PrimitiveLibrary()
+ITEMS = (
+    cuboid("table", (0.0, 2.6, 0), (0.8, 1.4, 0.72)),
+    cuboid("tray", (0.0, 2.6, 0.72), (0.4, 0.4, 0.05)),
+    cuboid("ball", (0.0, 2.6, 0.77), (0.2, 0.2, 0.2)),
+)
+SHOT = shoot(look(0, 14, 1.5, 70, (160, 120)), box_room(-2.2, 2.2, 4.0, 2.6), ITEMS, ("table", "object", "toy"))
+EDGES = (Support("table", "floor"), Support("tray", "table"), Support("ball", "tray"))
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -230,3 +241,55 @@ def test_the_page_about_how_it_works_has_every_stage_in_the_order_of_the_plan() 
     assert len(places) == len(names)
     assert places == sorted(places)
     assert all(re.search(rf"\*\*[^*]*\b{name}\b", page, re.IGNORECASE) for name in names if "_" not in name)
+
+
+def posed(object_id: str, *shapes: str) -> PosedCandidates:
+    """Ranked shapes, each where its rank says."""
+    made = tuple(
+        Candidate(s, PRIMITIVES.shape(s).size_m, 1.0 - k / 10, Pose.upright((k, 2.6, 0.5)))
+        for k, s in enumerate(shapes)
+    )
+    return PosedCandidates(object_id, made, 0.7)
+
+
+def scene_of(*found: PosedCandidates, edges=EDGES, colours=None):
+    estimate = ArchitectureEstimate(Architecture(SHOT.planes), edges, 1.0, RoomSource(RoomMethod.GIVEN))
+    return assemble(SHOT.objects, SHOT.geometry, estimate, found, PRIMITIVES, colours or {})
+
+
+def test_every_object_is_its_best_candidate_with_all_it_came_from() -> None:
+    colour = (0.1, 0.2, 0.3)
+    scene = scene_of(
+        posed("table", "table", "chair"), posed("tray", "ball"), posed("ball", "ball"), colours={"table": colour}
+    )
+    table = scene.object("table")
+    assert (table.shape_id, table.confidence, table.colour) == ("table", 0.7, colour)
+    assert [c.shape_id for c in table.candidates] == ["table", "chair"]
+    assert table.pose == table.candidates[0].pose
+    assert table.box_px == SHOT.objects[0].box
+    assert table.mask_id == SHOT.objects[0].mask_id
+    assert scene.supports == EDGES
+    assert scene.camera == SHOT.camera
+    assert scene.architecture.planes == SHOT.planes
+
+
+def test_an_unknown_object_takes_the_category_and_the_name_of_its_shape() -> None:
+    scene = scene_of(posed("tray", "ball"))
+    assert scene.object("tray").category == "toy"
+    assert (SHOT.objects[1].label, scene.object("tray").label) == ("object", "toy")
+
+
+def test_what_found_no_shape_is_left_out_and_hands_on_what_it_held() -> None:
+    scene = scene_of(posed("table", "table"), posed("ball", "ball"), PosedCandidates("tray", (), 0.0))
+    assert not scene.has_object("tray")
+    assert scene.support_of("ball").parent == "table"
+    floor_only = scene_of(posed("ball", "ball"))
+    assert floor_only.support_of("ball").parent == "floor"
+
+
+def test_an_edge_that_leads_nowhere_is_dropped() -> None:
+    lost = (replace(EDGES[0], parent="nowhere"), *EDGES[1:])
+    scene = scene_of(posed("table", "table"), posed("ball", "ball"), edges=lost)
+    assert scene.support_of("table") is None
+    assert scene.support_of("ball").parent == "table"
+    assert np.isfinite(scene.object("ball").pose.position).all()

@@ -13,7 +13,7 @@ from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
 from diorama_core.layout.settings import LAYOUT, REFINEMENT
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.perception.camera import settings as lines
+from diorama_core.perception.camera import vanishing as lines
 from diorama_core.perception.graph import object_observations as graph
 from diorama_core.perception.measured import cloud as measured_objects
 from diorama_core.perception.metrology import settings as metrology

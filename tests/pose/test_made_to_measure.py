@@ -18,19 +18,24 @@ from diorama_core.artefacts import (
 )
 from diorama_core.library.catalogue import base_id, built_in_library
 from diorama_core.library.furniture import designs
-from diorama_core.library.furniture.measures import made_by_id, values_of
+from diorama_core.library.furniture.measures import is_turned, made_by_id, made_id, values_of
 from diorama_core.pose import MadeToMeasure, RenderAndCompare
+from diorama_core.pose.details import InnerEdges
+from diorama_core.pose.made_to_measure import FittedChoice
+from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, ScaleSource
 from diorama_core.render.raycast import render_buffers
 from diorama_core.scene.types import Candidate, Pose
 from tests.pose.rooms import LIBRARY as BLOCKS
 from tests.pose.rooms import camera_at
+from tests.pose.test_turned_profile import LARGE, as_large, seen
 
 LIBRARY = built_in_library()
 STAGE = MadeToMeasure(RenderAndCompare(LIBRARY), LIBRARY)
 CAMERA = camera_at()
 DESIGNS = {d.id: d for d in designs()}
+CHOICE = FittedChoice(LIBRARY)
 
 
 def fitted(true_id: str, found_id: str, scale=(1.0, 1.0, 1.0), library=LIBRARY, measured: bool = True) -> Candidate:
@@ -119,3 +124,38 @@ def test_no_candidate_gets_lost_when_another_one_comes_first() -> None:
 
 def test_with_measured_depth_the_ranking_stands() -> None:
     assert badly_fitting(measured=True)[0] == "stool-round-oak"
+
+
+def order(true_id: str, ids: tuple[str, ...], outlined: bool = True) -> tuple[str, ...]:
+    """The shapes of candidates in the place of a vase, best first, of falling ranks before."""
+    evidence, pose = seen(true_id)
+    found = (
+        Candidate(i, LIBRARY.shape(i).size_m, 0.9 - 0.1 * k, as_large(i, pose, true_id)) for k, i in enumerate(ids)
+    )
+    k = evidence.camera.intrinsics
+    edges = InnerEdges.of(np.full((k.height, k.width, 3), 90, np.uint8), evidence.seen)
+    one = SeenObject(evidence, evidence, edges, pose, 5000, 1.0 if outlined else 0.8, "vase")
+    out = CHOICE.best_first(PosedCandidates("o", tuple(found), 0.9), one)
+    assert all(np.isfinite(c.score) for c in out.candidates)
+    return tuple(c.shape_id for c in out.candidates)
+
+
+def test_a_body_of_revolution_comes_first_where_its_profile_is_that_of_the_picture() -> None:
+    ids = ("night-stand-cane", "dresser-white-four", "vase-cylinder-glass")
+    assert order("vase-moon-stone", ids) == ("vase-cylinder-glass", "night-stand-cane", "dresser-white-four")
+
+
+def test_an_outline_that_is_not_sure_tells_no_profile() -> None:
+    ids = ("vase-amphora", "vase-cylinder-glass")
+    assert order("vase-moon-stone", ids, outlined=False) == ids
+
+
+def test_what_fits_well_stays_first() -> None:
+    assert order("vase-moon-stone", ("vase-moon-stone", "vase-urn-blue"))[0] == "vase-moon-stone"
+
+
+def test_among_candidates_the_one_comes_first_that_fits_once_it_is_turned() -> None:
+    true_id = made_id("vase-moon-stone", LARGE * np.array(LIBRARY.shape("vase-moon-stone").size_m), {})
+    first = ranked(true_id, ("dresser-white-four", "object-drum"), measured=False)[0]
+    assert base_id(first.shape_id) == "object-drum"
+    assert is_turned(first.shape_id)

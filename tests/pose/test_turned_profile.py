@@ -8,14 +8,12 @@ import numpy as np
 import pytest
 
 from diorama_core.geometry.observed import observe
-from diorama_core.library.catalogue import base_id, built_in_library
-from diorama_core.library.furniture.measures import is_turned, made_id
+from diorama_core.library.catalogue import built_in_library
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.turned_profile import is_revolution, profile_m, turned
 from diorama_core.render.raycast import render_buffers
 from diorama_core.scene.types import Pose
 from tests.pose.rooms import camera_at
-from tests.pose.test_made_to_measure import ranked
 
 LIBRARY = built_in_library()
 CAMERA = camera_at()
@@ -71,10 +69,3 @@ def test_what_is_no_body_of_revolution_is_not_turned() -> None:
 )
 def test_sections_tell_bodies_of_revolution(shape_id: str, is_one: bool) -> None:
     assert is_revolution(LIBRARY.mesh(shape_id)) is is_one
-
-
-def test_among_candidates_the_one_comes_first_that_fits_once_it_is_turned() -> None:
-    true_id = made_id("vase-moon-stone", LARGE * np.array(LIBRARY.shape("vase-moon-stone").size_m), {})
-    first = ranked(true_id, ("dresser-white-four", "object-drum"), measured=False)[0]
-    assert base_id(first.shape_id) == "object-drum"
-    assert is_turned(first.shape_id)

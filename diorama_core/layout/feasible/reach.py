@@ -17,8 +17,7 @@ from diorama_core.arrangement.surfaces import RestingSurface
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.rest import INSET_M
 from diorama_core.layout.feasible.structure import Structure
-from diorama_core.layout.problem.footing import reach_of
-from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.problem.problem import Problem, reach_of
 
 
 def reaching_loads(problem: Problem, structure: Structure, eye: Float[np.ndarray, "3"] | None) -> Problem:

@@ -13,8 +13,7 @@ from diorama_core.geometry.vectors import cross
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.quadratic import HARD, least_distance
 from diorama_core.layout.feasible.rest import INSET_M, aligned, largest_share
-from diorama_core.layout.problem.footing import reach_of
-from diorama_core.layout.problem.problem import Problem
+from diorama_core.layout.problem.problem import Problem, reach_of
 
 
 @dataclass

@@ -1,6 +1,10 @@
 """What the layout optimisers solve: a scene and its shapes, reduced to arrays.
 
 Objects are sorted by id, so that no result depends on the order in which a scene lists them.
+
+Where objects touch what holds them up: the points of a shape near its contact face.
+
+A round table stands within a floor that the corners of its box overhang; a lamp stands on its base, not on its shade.
 """
 
 from __future__ import annotations
@@ -26,15 +30,17 @@ from diorama_core.arrangement.surfaces import (
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.geometry.planes import in_polygon
 from diorama_core.geometry.sat import PaddedParts, pack_parts
-from diorama_core.layout.problem.footing import box_footing, footing_of
+from diorama_core.geometry.vectors import unique_rows
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.layout.settings import LAYOUT, LayoutSettings
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.support import descendants
-from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support
+from diorama_core.scene.types import Plane, Pose, Scene, SceneObject, Support, box_corners
 
 _BOX_GRID = np.stack(np.meshgrid(*3 * [np.linspace(-0.5, 0.5, 5)]), axis=-1).reshape(-1, 3)
 """Points of a box of extents 1."""
+CONTACT_SHARE = 0.03
+"""What is within this share of a shape's depth from its contact face touches what holds it up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -306,3 +312,37 @@ def _kin(parent: np.ndarray, yielding: Bool[np.ndarray, "n n"]) -> Bool[np.ndarr
 def _yielding_pairs(objects: Sequence[SceneObject]) -> Bool[np.ndarray, "n n"]:
     rugs = np.array([o.category == "rug" and o.size_m[2] < 0.06 for o in objects], dtype=bool).reshape(-1)
     return rugs[:, None] | rugs[None]
+
+
+def footing_of(parts: Sequence[ConvexPart], contact: Float[np.ndarray, "3"]) -> Float[np.ndarray, "k 3"]:
+    """Points of convex parts (object frame) near the face with outward normal `contact`, flattened onto its plane."""
+    points = np.concatenate([part.vertices for part in parts])
+    along = points @ contact
+    near = along >= along.max() - CONTACT_SHARE * np.ptp(along)
+    return _distinct(points[near] * (1.0 - np.abs(contact)))
+
+
+def box_footing(size_m: Float[np.ndarray, "3"], contact: Float[np.ndarray, "3"]) -> Float[np.ndarray, "k 3"]:
+    """The corners of a box's contact face, flattened onto its plane."""
+    return _distinct(box_corners(size_m) * (1.0 - np.abs(contact)))
+
+
+def _distinct(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "k 3"]:
+    return points[unique_rows(points)[0]]
+
+
+def reach_of(
+    footing: Float[np.ndarray, "k 3"],
+    R: Float[np.ndarray, "3 3"],
+    scale: Float[np.ndarray, "3"],
+    outward: Float[np.ndarray, "s 3"],
+) -> Float[np.ndarray, " s"]:
+    """How far a footing reaches from the centre of the contact face along each outward direction (world), metres.
+
+    Args:
+        footing: points at scale 1, object frame.
+        R: rotation of the object.
+        scale: along its axes.
+        outward: unit directions, world.
+    """
+    return (outward @ (R @ (footing * scale).T)).max(axis=1)

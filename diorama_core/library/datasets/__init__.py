@@ -4,7 +4,13 @@ Nothing is downloaded, and each licence stays what it is. A data set says which 
 how they stand; taking them in is the same as for anyone's own models.
 """
 
-from diorama_core.library.datasets.layout import Dataset, DatasetEntry, as_sources
-from diorama_core.library.datasets.published import DATASETS, dataset_named, recognised
+from diorama_core.library.datasets.published import (
+    DATASETS,
+    Dataset,
+    DatasetEntry,
+    as_sources,
+    dataset_named,
+    recognised,
+)
 
 __all__ = ["DATASETS", "Dataset", "DatasetEntry", "as_sources", "dataset_named", "recognised"]

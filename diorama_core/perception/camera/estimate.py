@@ -12,8 +12,14 @@ from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.perception.camera.frames import frame_difference_rad
 from diorama_core.perception.camera.gravity_depth import GravityFrame, frame_from_depth
-from diorama_core.perception.camera.settings import SETTINGS, LineCameraSettings
-from diorama_core.perception.camera.vanishing import FrameFit, Lines, prior_frame, search_frames
+from diorama_core.perception.camera.vanishing import (
+    SETTINGS,
+    FrameFit,
+    LineCameraSettings,
+    Lines,
+    prior_frame,
+    search_frames,
+)
 from diorama_core.progress import Progress
 from diorama_core.protocols import CameraStage
 from diorama_core.provenance import AttitudeSource, CameraSource, FocalSource, HeadingSource

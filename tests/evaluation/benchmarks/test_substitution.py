@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.arrangement.noise import MEASURED, REASONED, ObservationNoise
+from diorama_core.arrangement.support_hypotheses import MEASURED, REASONED, ObservationNoise
 from diorama_core.artefacts import Cuboid, Inputs, ObjectGeometry, Photo
 from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.substitution import (

@@ -9,10 +9,20 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import Cancelled, InputError
-from diorama_core.evaluation.speed.bench import Extent, Series, SpeedBench, memory_table, speed_table, step_table
+from diorama_core.evaluation.speed.bench import (
+    Extent,
+    Series,
+    SpeedBench,
+    committed_figures,
+    memory_table,
+    regression_bytes,
+    regression_table,
+    slower,
+    speed_table,
+    step_table,
+)
 from diorama_core.evaluation.speed.eager import BATCHED, BATCHED_GPU, EAGER, OURS, step_seconds
 from diorama_core.evaluation.speed.meter import StageClock, cost_of, growth_exponent, yardstick_s
-from diorama_core.evaluation.speed.regression import committed_figures, regression_bytes, regression_table, slower
 from diorama_core.evaluation.speed.series import features_by_library, large_scene, words_by_library
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.progress import CancelToken, Progress

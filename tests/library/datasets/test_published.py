@@ -11,7 +11,7 @@ import pytest
 import trimesh
 
 from diorama_core.errors import InputError
-from diorama_core.library.datasets import as_sources, dataset_named, layout, recognised
+from diorama_core.library.datasets import as_sources, dataset_named, published, recognised
 from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.shaping import ModelSource
@@ -153,19 +153,19 @@ def test_broken_metadata_names_the_file(tmp_path: Path) -> None:
 
 
 def test_packed_metadata_is_capped_before_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(layout, "MAX_METADATA_BYTES", 100_000)
+    monkeypatch.setattr(published, "MAX_METADATA_BYTES", 100_000)
     path = tmp_path / "lvis-annotations.json.gz"
     path.write_bytes(gzip.compress(b'["a"]'))
-    assert layout.read_json(path) == ["a"]
+    assert published.read_json(path) == ["a"]
     path.write_bytes(gzip.compress(b" " * 50_000_000))
     with pytest.raises(InputError, match=r"unpack to more than 0\.1 MB.*; download it again"):
-        layout.read_json(path)
+        published.read_json(path)
     path.write_bytes(gzip.compress(b'["a"]')[:-9])
     with pytest.raises(InputError, match="cannot be read"):
-        layout.read_json(path)
+        published.read_json(path)
     (tmp_path / "deep.json").write_text("[" * 10_000)
     with pytest.raises(InputError, match="nested"):
-        layout.read_json(tmp_path / "deep.json")
+        published.read_json(tmp_path / "deep.json")
 
 
 def test_an_unknown_data_set_lists_the_known(tmp_path: Path) -> None:

@@ -17,8 +17,8 @@ from diorama_core.io.file_heads import head_of
 from diorama_core.io.glb import read_glb, write_glb
 from diorama_core.library.ingest.finding import members_of
 from diorama_core.library.ingest.frames import OBJ, own_frame, squaring_turn
+from diorama_core.library.ingest.gltf import use_specular_glossiness
 from diorama_core.library.ingest.gltf_compressed import meshopt_view
-from diorama_core.library.ingest.gltf_materials import use_specular_glossiness
 from diorama_core.library.ingest.joint import exporter_of, groups_of, joint_convention
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import MODEL_FORMS, form_of, read_model

@@ -6,15 +6,21 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from jaxtyping import Bool, Float32, Shaped
+from jaxtyping import Bool, Float, Float32, Shaped, UInt8
 
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.depth.choosing import chosen_reading
 from diorama_core.perception.inputs.depth.confidence import without_unsure
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
-from diorama_core.perception.inputs.depth.flips import turned, turned_over
-from diorama_core.perception.inputs.depth.kinds import BENT, DepthKind, depth_readings, rays_of
+from diorama_core.perception.inputs.depth.kinds import (
+    BENT,
+    CONTRADICTION,
+    MIN_ORDER,
+    DepthKind,
+    DepthReading,
+    depth_readings,
+    rays_of,
+)
 from diorama_core.perception.inputs.depth.numpy_files import DepthContent, RawDepth
 from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
 from diorama_core.perception.inputs.depth.scale import (
@@ -31,7 +37,6 @@ from diorama_core.scene.types import Intrinsics
 
 DepthEncoding = Literal["linear", "sunrgbd"]
 """How a PNG's 16 bits mean distance: as they are, or rotated by three bits as in SUN RGB-D."""
-
 FARTHEST_M = 80.0
 """Larger values mean that the sensor measured nothing."""
 ROOM_MEDIAN_M = (0.15, 20.0)
@@ -45,6 +50,35 @@ MOSTLY = 0.5
 """Share of the pixels that must be negative, for a map of a camera that looks along -z."""
 Z_BUFFER = (0.6, 1.0)
 """Within which all values of a graphics card's depth buffer lie where nothing is close to the camera."""
+WORKING_SIDE_PX = 192
+MARGIN = 0.1
+"""By which the edges of a turned map must agree better with the photo's, as correlations."""
+MIN_AGREEMENT = 0.25
+"""Correlation of a turned map with the photo: measured maps that lie right have 0.28 to 0.4, turned ones up to 0.24."""
+_TURNS = {
+    "mirrored": np.s_[:, ::-1],
+    "upside down": np.s_[::-1, ::-1],
+    "upside down and mirrored": np.s_[::-1, :],
+}
+CONTRADICTING_PLANES = 0.08
+"""Share of pixels by which inverse depth forms more planes, from which it would have to be what is given."""
+MORE_PLANES = 0.015
+"""Share of pixels by which planes must speak for another reading, whatever near and far say."""
+BENT_PLANES = 0.05
+"""Share of pixels by which the root or logarithm of depth must form more planes to be asked for: depth that networks
+guessed bends planes by itself."""
+WORDS = {
+    "depth": "depth along the optical axis",
+    "distance": "distances along the rays",
+    "inverse": "inverse depth",
+    "root": "the square root of depth",
+    "logarithm": "the logarithm of depth",
+    "shifted": "depth less a constant, as programs normalise it",
+}
+_INVERSE_ANSWERS = (
+    DepthAnswer("inverse depth, fitted to the usual sizes of objects", kind="inverse"),
+    DepthAnswer("depth along the optical axis after all", kind="depth"),
+)
 
 
 @dataclass(frozen=True)
@@ -258,3 +292,113 @@ def _at_size(
     if width * 2 < photo_size[0]:
         return resized, (f"the depth ({width} x {height}) is much coarser than the photo",)
     return resized, ()
+
+
+def turned_over(
+    values: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"], rgb: UInt8[np.ndarray, "h2 w2 3"]
+) -> str | None:
+    """How a map lies over its photo, where that is clearly not as the photo; None otherwise.
+
+    Args:
+        values: of the map.
+        valid: where it was measured.
+        rgb: the photo, of the same proportions.
+    """
+    import cv2  # the editor opens without it
+
+    scale = WORKING_SIDE_PX / max(rgb.shape[:2])
+    size = max(8, round(rgb.shape[1] * scale)), max(8, round(rgb.shape[0] * scale))
+    grey = cv2.cvtColor(cv2.resize(rgb, size, interpolation=cv2.INTER_AREA), cv2.COLOR_RGB2GRAY).astype(np.float32)
+    low, high = np.percentile(values[::4, ::4][valid[::4, ::4]], [2, 98])
+    even = np.clip((np.where(valid, values, low) - low) / max(float(high - low), 1e-12), 0, 1).astype(np.float32)
+    steps = cv2.resize(even, size, interpolation=cv2.INTER_AREA)
+    seen = cv2.resize(valid.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0.99
+    sure = cv2.erode(seen.astype(np.uint8), np.ones((5, 5))) > 0  # not where measured meets missing
+    photo, depth = _edges(grey), _edges(steps)
+    as_is = _agreement(photo, depth, sure)
+    agreements = {name: _agreement(photo, depth[turn], sure[turn]) for name, turn in _TURNS.items()}
+    best = max(agreements, key=lambda name: agreements[name])
+    return best if agreements[best] > max(as_is + MARGIN, MIN_AGREEMENT) else None
+
+
+def turned(values: Float[np.ndarray, "h w"], how: str) -> Float[np.ndarray, "h w"]:
+    """A map as it lies over its photo, `how` being what `turned_over` said of it."""
+    return np.ascontiguousarray(values[_TURNS[how]])
+
+
+def _edges(picture: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h w"]:
+    import cv2  # as above
+
+    strength = np.hypot(*(cv2.Sobel(picture, cv2.CV_32F, dx, 1 - dx) for dx in (0, 1)))
+    return np.asarray(cv2.GaussianBlur(np.sqrt(strength), (5, 5), 0))
+
+
+def _agreement(one: Float[np.ndarray, "h w"], other: Float[np.ndarray, "h w"], sure: Bool[np.ndarray, "h w"]) -> float:
+    """The correlation of two pictures of edges where the second one is sure."""
+    if np.count_nonzero(sure) < 0.2 * sure.size:
+        return 0.0
+    a, b = one[sure] - one[sure].mean(), other[sure] - other[sure].mean()
+    return float((a * b).sum() / max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-12))
+
+
+def chosen_reading(
+    name: str, readings: tuple[DepthReading, ...], stated_kind: str | None, kind: DepthKind
+) -> tuple[DepthReading, tuple[str, ...]]:
+    """The reading that is used, and what to say about it.
+
+    Args:
+        name: of the file.
+        readings: likeliest first; depth, inverse depth and the given kind are among them.
+        stated_kind: "inverse" where the file says so.
+        kind: what its user says.
+
+    Raises:
+        AmbiguousDepthError: the map is inverse depth, or the root or logarithm of depth.
+        InputError: it contradicts the picture.
+    """
+    best, of_kind = readings[0], {r.kind: r for r in readings}
+    if kind != "auto":
+        note = f"{name} was read as {WORDS[kind]} as asked, but its planes look like {WORDS[best.kind]}"
+        return of_kind[kind], (note,) if best.score - of_kind[kind].score > CONTRADICTION else ()
+    depth, inverse = of_kind["depth"], of_kind["inverse"]
+    if stated_kind == "inverse":
+        best = inverse
+    doubt = _bent(name, readings)
+    if inverse.fit.explained - depth.fit.explained > CONTRADICTING_PLANES and inverse.order < MIN_ORDER:
+        raise InputError(
+            f"{name}: this contradicts the picture: walls and floor are not flat, near and far are not the photo's; "
+            "give z in the camera, or say what it is by --depth-kind"
+        )
+    clearly = best.score - depth.score > CONTRADICTION / 2 and best.fit.explained > depth.fit.explained + MORE_PLANES
+    if best.kind not in ("distance", "inverse") or not clearly:
+        return depth, doubt
+    if best.kind == "distance":
+        remark = f"{name} holds distances along the rays, not along the optical axis: only so are walls and floor flat"
+        return best, (remark + "; they were converted (--depth-kind depth keeps them)",)
+    raise AmbiguousDepthError(
+        f"{name}: this is inverse depth or disparity (larger is nearer), which has no unit; give metric depth, or add "
+        "--depth-kind inverse to fit it to the objects' usual sizes",
+        _INVERSE_ANSWERS,
+    )
+
+
+def _bent(name: str, readings: tuple[DepthReading, ...]) -> tuple[str, ...]:
+    """A note where walls and floor are flatter under the root or logarithm of depth than under all other readings.
+
+    Raises:
+        AmbiguousDepthError: they are much flatter.
+    """
+    flattest = max(readings, key=lambda r: r.fit.explained)
+    if flattest.kind not in BENT:
+        return ()
+    more = flattest.fit.explained - max(r.fit.explained for r in readings if r.kind not in BENT)
+    looks = f"walls and floor are flat only if this is {WORDS[flattest.kind]}"
+    if more > BENT_PLANES:
+        raise AmbiguousDepthError(
+            f"{name}: {looks}; give depth itself, or add --depth-kind {flattest.kind}, or --depth-kind depth if it is",
+            (
+                DepthAnswer(f"{WORDS[flattest.kind]}, fitted to the usual sizes of objects", kind=flattest.kind),
+                DepthAnswer("depth along the optical axis after all", kind="depth"),
+            ),
+        )
+    return (f"{name} may be {WORDS[flattest.kind]}: so walls and floor would be flatter",) if more > MORE_PLANES else ()

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.perception.inputs.depth.choosing import chosen_reading
 from diorama_core.perception.inputs.depth.kinds import depth_readings, near_and_far, rays_of
 from diorama_core.perception.inputs.depth.planes import PlaneFit, planes_of, sampled
+from diorama_core.perception.inputs.depth.reading import chosen_reading
 from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
 from diorama_core.perception.inputs.depth.scale import (
     AmbiguousDepthError,

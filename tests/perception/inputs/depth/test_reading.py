@@ -11,12 +11,17 @@ from hypothesis import strategies as st
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.perception.inputs.depth.reading import FARTHEST_M, DepthOptions, read_depth
+from diorama_core.perception.inputs.depth.reading import FARTHEST_M, DepthOptions, read_depth, turned, turned_over
 from diorama_core.perception.inputs.depth.voids import SKY_M
 from diorama_core.perception.inputs.source import Source
+from tests.perception.inputs.depth.rooms import room
 from tests.perception.inputs.files import HEIGHT, WIDTH, decoded, depth_png, encoded, npy, picture, refusal
 
 FLAT = np.full((48, 64), 2.5, np.float32)
+DEPTH, _ = room()
+DEPTH = DEPTH[:, :140]  # not alike left and right
+NOISE = np.random.default_rng(0).normal(0, 3, (*DEPTH.shape, 1))
+PHOTO = np.clip(60 + 30 * DEPTH[..., None] + NOISE, 0, 255).repeat(3, axis=2).astype(np.uint8)
 
 
 def test_depth_along_minus_z_is_turned_round() -> None:
@@ -217,3 +222,19 @@ class TestDepth:
         values = np.zeros((HEIGHT, WIDTH))
         values[:6] = 2.0
         assert any("measured" in w for w in read_inputs(self.photo, depth=npy(values)).warnings)
+
+
+@pytest.mark.parametrize("how", ["mirrored", "upside down", "upside down and mirrored"])
+@pytest.mark.parametrize("inverse", [True, False])
+def test_turned_maps_are_told_and_turned(how: str, inverse: bool) -> None:
+    values = 1 / DEPTH if inverse else DEPTH
+    over = turned(values, how)
+    assert turned_over(over, over > 0, PHOTO) == how
+    np.testing.assert_array_equal(turned(over, how), values)
+
+
+def test_right_maps_and_plain_photos_say_nothing() -> None:
+    assert turned_over(DEPTH, DEPTH > 0, PHOTO) is None
+    assert turned_over(DEPTH, DEPTH > 0, np.full_like(PHOTO, 90)) is None
+    holes = DEPTH * (np.random.default_rng(1).random(DEPTH.shape) > 0.9)
+    assert turned_over(holes, holes > 0, PHOTO) is None

@@ -16,12 +16,10 @@ from PIL import Image
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.masks.files import read_arrays, read_folder_of_masks
 from diorama_core.perception.inputs.masks.pictures import VOC_VOID, painted, read_picture, without_void
 from diorama_core.perception.inputs.masks.reading import read_masks
-from diorama_core.perception.inputs.masks.run_lengths import decoded_runs
-from diorama_core.perception.inputs.masks.segments import is_markup, read_segments
-from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent
+from diorama_core.perception.inputs.masks.segments import decoded_runs, is_markup, read_segments
+from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent, read_arrays, read_folder_of_masks
 from diorama_core.perception.inputs.source import Folder, Source, form_of, read_folder
 from tests.perception.inputs.files import decoded, encoded, npy
 

@@ -1,18 +1,12 @@
-"""What the manifest says of networks that find, outline and measure."""
+"""What the manifest says of networks."""
 
 from __future__ import annotations
 
 from diorama_core.models.manifest import NETWORKS, in_half, network, networks_of
-from diorama_core.models.perception_networks import PERCEPTION_NETWORKS
-
-
-def test_they_are_part_of_the_manifest_and_have_its_three_roles() -> None:
-    assert set(PERCEPTION_NETWORKS) <= set(NETWORKS)
-    assert {n.role for n in PERCEPTION_NETWORKS} == {"detection", "segmentation", "geometry"}
 
 
 def test_a_side_is_a_whole_number_of_patches() -> None:
-    sides = {n.id: n.side for n in PERCEPTION_NETWORKS if n.side is not None}
+    sides = {n.id: n.side for n in NETWORKS if n.side is not None}
     assert sides == {"owlv2-large": 1008}
     assert sides["owlv2-large"] % 14 == 0, "as its repository's name says: patch14"
 

@@ -13,8 +13,7 @@ from diorama_core.io.assets import CARD, DETECTOR, NAMER
 from diorama_core.library.form import MEASURED, VALUES
 from diorama_core.models.recogniser import Looks, Recogniser
 from diorama_core.models.runtime import SessionPool
-from diorama_core.training.export import export_detector, export_namer, write_card
-from diorama_core.training.joined import join_namers
+from diorama_core.training.export import export_detector, export_namer, join_namers, write_card
 from diorama_core.training.networks import Detector, Namer
 
 NAMES = ("bed", "chair", "table")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from diorama_app.cli.bench_output import write_text
+from diorama_app.cli.bench_photos import write_text
 
 
 @pytest.mark.parametrize("inside", ["", "\nolder\n"])
