@@ -7,16 +7,17 @@ first pull, recorded, and held to that record from then on (`store.py`).
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from diorama_core.errors import InputError
-from diorama_core.models.network import TIERS, ModelFile, Network
+from diorama_core.models.network import TIERS, ModelFile, Network, Tier
 
 
-def _row(files: list[list[Any]], tiers: tuple[Any, ...] = (), **columns: Any) -> Network:
+def _row(files: list[list[Any]], tiers: Sequence[Tier] = (), **columns: Any) -> Network:
     """A row of `networks.toml`, which says what its columns are."""
-    read = (ModelFile(*known[:3], also_sha256=tuple(known[3:])) for known in files)
+    read = (ModelFile(**dict(zip(("path", "bytes", "sha256"), known)), also_sha256=tuple(known[3:])) for known in files)
     return Network(files=tuple(read), tiers=tuple(tiers), **columns)
 
 
