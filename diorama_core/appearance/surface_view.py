@@ -8,10 +8,11 @@ import numpy as np
 import trimesh
 from jaxtyping import Bool, Float, Float32, Int8, Int32
 
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.geometry.vectors import dot, face_normals, facing, unit
 from diorama_core.library.photo_materials import metric_uv, with_own_corners
 from diorama_core.library.slots import Slot, placed_vertices
-from diorama_core.render.raycast import Caster, PinholeView
+from diorama_core.render.raycast import PinholeView
 from diorama_core.scene.types import Camera, Pose
 
 
@@ -60,7 +61,7 @@ def surface_view(
     vertices, faces, uv, owner = _joined(with_own_corners(parts, slots), slots)
     world = pose.apply(vertices).astype(np.float32)
     rays = PinholeView(camera).rays(np.stack([x, y], axis=-1))
-    hits = Caster(world, faces).first_hits(rays)
+    hits = RayScene(world, faces).first_hits(rays)
     is_hit, triangle = hits.found, hits.triangle[hits.found]
     weights = np.concatenate([1 - hits.barycentric.sum(axis=-1, keepdims=True), hits.barycentric], axis=-1)[is_hit]
     slot = np.full(is_hit.shape, -1, np.int8)

@@ -9,19 +9,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import Any
 
 import numpy as np
 import trimesh
-from jaxtyping import Bool, Float, Float32, Int, UInt32
+from jaxtyping import Bool, Float, Float32, Int, Int32
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.geometry.projection import NEAR_M, edges_of_cuboid, frustum_slack
-from diorama_core.io.large_libraries import o3d
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.scene.types import Camera, box_corners
 
-ALL_CORES = 0
-"""Threads of Open3D. It keeps the interpreter locked while it casts: ours wait meanwhile, and leave it their cores."""
 _MIN_EXTENT_M = 1e-4
 _HULL_DIRECTIONS = 48
 
@@ -65,7 +62,7 @@ class ShapeHits:
     depth_m: Float[np.ndarray, "p r"]
     normals_object: Float[np.ndarray, "p r 3"]
     """Normals of the faces met, in the shape's own frame at scale 1."""
-    triangles: UInt32[np.ndarray, "p r"]
+    triangles: Int32[np.ndarray, "p r"]
     """Which faces are met; of no use where nothing is."""
     directions_world: Float[np.ndarray, "r 3"]
     poses: PoseBatch
@@ -112,11 +109,7 @@ class ShapeCaster:
         extent = np.ptp(np.ascontiguousarray(vertices.T), axis=1) if len(vertices) else np.ones(3)
         self.size_m: Float[np.ndarray, "3"] = np.maximum(extent, _MIN_EXTENT_M)
         self._vertices = vertices
-        self._scene: Any = o3d.t.geometry.RaycastingScene(nthreads=1)
-        corners = vertices if len(mesh.faces) else np.zeros((3, 3))
-        triangles = mesh.faces if len(mesh.faces) else [[0, 1, 2]]
-        self._scene.add_triangles(np.asarray(corners, dtype=np.float32), np.asarray(triangles, dtype=np.uint32))
-        self._cast(np.array([[9.0, 9.0, 9.0, 1.0, 0.0, 0.0]], np.float32))  # builds the tree here, not under threads
+        self._scene = RayScene(vertices, np.asarray(mesh.faces))
 
     @cached_property
     def corners(self) -> Float[np.ndarray, "8 3"]:
@@ -136,10 +129,6 @@ class ShapeCaster:
         """Whether the outline from above is a circle, whatever the legs: things like it are not made oval."""
         return is_circle(self._vertices[:, :2])
 
-    def _cast(self, rays: Float[np.ndarray, "n 6"]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        answer = self._scene.cast_rays(o3d.core.Tensor(rays), nthreads=ALL_CORES)
-        return answer["t_hit"].numpy(), answer["primitive_normals"].numpy(), answer["primitive_ids"].numpy()
-
     def covers(
         self, origin_world: Float[np.ndarray, "3"], directions_world: Float[np.ndarray, "r 3"], poses: PoseBatch
     ) -> Bool[np.ndarray, "p r"]:
@@ -151,8 +140,7 @@ class ShapeCaster:
             poses: of the shape, p of them.
         """
         rays = _rays(origin_world, directions_world, poses)
-        met = self._scene.test_occlusions(o3d.core.Tensor(rays.reshape(-1, 6)), tnear=NEAR_M, nthreads=ALL_CORES)
-        return np.asarray(met.numpy().reshape(rays.shape[:2]))
+        return self._scene.occluded(rays, NEAR_M)
 
     def cast(
         self, origin_world: Float[np.ndarray, "3"], directions_world: Float[np.ndarray, "r 3"], poses: PoseBatch
@@ -165,11 +153,10 @@ class ShapeCaster:
             poses: of the shape, p of them.
         """
         rays = _rays(origin_world, directions_world, poses)
-        depth, normals, triangles = self._cast(rays.reshape(-1, 6))
-        shape = rays.shape[:2]
-        depth = depth.reshape(shape).astype(np.float64)
+        hits = self._scene.first_hits(rays)
+        depth = hits.distance.astype(np.float64)
         depth[~(depth > NEAR_M)] = np.inf
-        return ShapeHits(depth, normals.reshape(*shape, 3), triangles.reshape(shape), directions_world, poses)
+        return ShapeHits(depth, hits.normal, hits.triangle, directions_world, poses)
 
     def bounds_px(self, camera: Camera, poses: PoseBatch) -> Float[np.ndarray, "p 4"]:
         """Boxes x1, y1, x2, y2 of the posed shape in the photo, clipped to it; NaN where it is out of sight."""

@@ -9,7 +9,7 @@ dropped, 10th percentile of the free height).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import trimesh
@@ -19,11 +19,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
 
 from diorama_core.geometry.planes import signed_area
-from diorama_core.io.large_libraries import o3d
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.library.record import SupportSurface
-
-if TYPE_CHECKING:
-    from open3d.t.geometry import RaycastingScene
 
 SURFACES_VERSION = 2
 """Raise it when other surfaces are found on the same shape, so that those on disk are measured again."""
@@ -70,7 +67,7 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
     low, high = mesh.bounds
     extent = high - low
     cell_m = float(max(extent[0], extent[1])) / lattice
-    caster = _caster(mesh)
+    caster = RayScene(np.asarray(mesh.vertices), np.asarray(mesh.faces))
     spots = _spots(mesh, caster, cell_m)
     if len(spots.z) == 0:
         return ()
@@ -95,13 +92,7 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
     return tuple(sorted(surfaces, key=lambda s: (-round(s.height_m, 3), *np.round(s.polygon.mean(axis=0)[:2], 3))))
 
 
-def _caster(mesh: trimesh.Trimesh) -> RaycastingScene:
-    scene = o3d.t.geometry.RaycastingScene(nthreads=1)
-    scene.add_triangles(mesh.vertices.astype(np.float32), mesh.faces.astype(np.uint32))
-    return scene
-
-
-def _spots(mesh: trimesh.Trimesh, caster: RaycastingScene, cell: float) -> _Spots:
+def _spots(mesh: trimesh.Trimesh, caster: RayScene, cell: float) -> _Spots:
     """Shoot rays down through the shape and keep the upward faces that lie in free space."""
     low, high = mesh.bounds
     extent = high - low
@@ -118,14 +109,13 @@ def _spots(mesh: trimesh.Trimesh, caster: RaycastingScene, cell: float) -> _Spot
 
 
 def _hits(
-    mesh: trimesh.Trimesh, caster: RaycastingScene, x: Float[np.ndarray, "r"], y: Float[np.ndarray, "r"], top: float
+    mesh: trimesh.Trimesh, caster: RayScene, x: Float[np.ndarray, "r"], y: Float[np.ndarray, "r"], top: float
 ) -> tuple[Int[np.ndarray, "h"], Float[np.ndarray, "h"], Float[np.ndarray, "h"]]:
     """Every hit of downward rays: ray number, height, and the face normal's z; sorted by ray, then downward."""
     rays = np.zeros((len(x), 6), dtype=np.float32)
     rays[:, 0], rays[:, 1], rays[:, 2], rays[:, 5] = x, y, top, -1.0
-    hits = caster.list_intersections(o3d.core.Tensor.from_numpy(rays))
-    ray, t = hits["ray_ids"].numpy().astype(int), hits["t_hit"].numpy().astype(float)
-    up = mesh.face_normals[hits["primitive_ids"].numpy()][:, 2]
+    ray, t, triangle = caster.all_hits(rays)
+    up = mesh.face_normals[triangle][:, 2]
     order = np.lexsort((t, ray))
     return ray[order], top - t[order], up[order]
 
@@ -145,7 +135,7 @@ def _depth_and_gap(
     return np.maximum(depth, 0), above
 
 
-def _regions(spots: _Spots, caster: RaycastingScene) -> list[Int[np.ndarray, "_"]]:
+def _regions(spots: _Spots, caster: RayScene) -> list[Int[np.ndarray, "_"]]:
     """Spots grown together over neighbouring cells of nearly equal height, as far as nothing stands between them."""
     n = len(spots.z)
     bins = np.round(spots.z / STEP_M).astype(np.int64)
@@ -169,7 +159,7 @@ def _regions(spots: _Spots, caster: RaycastingScene) -> list[Int[np.ndarray, "_"
 
 
 def _walled_off(
-    spots: _Spots, caster: RaycastingScene, a: Int[np.ndarray, "p"], b: Int[np.ndarray, "p"]
+    spots: _Spots, caster: RayScene, a: Int[np.ndarray, "p"], b: Int[np.ndarray, "p"]
 ) -> Bool[np.ndarray, "p"]:
     """Whether something stands between two spots under a roof: the upright between two compartments of a shelf.
 
@@ -186,7 +176,7 @@ def _walled_off(
     level = np.maximum(start[:, 2], end[:, 2]) + WALL_M
     start[:, 2] = end[:, 2] = level
     rays = np.hstack([start, end - start]).astype(np.float32)
-    walled[roofed] = caster.test_occlusions(o3d.core.Tensor.from_numpy(rays), tnear=0.0, tfar=1.0).numpy()
+    walled[roofed] = caster.occluded(rays, far=1.0)
     return walled
 
 

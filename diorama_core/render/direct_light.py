@@ -8,8 +8,8 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Float, Float32
 
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.geometry.vectors import dot, unit
-from diorama_core.render.raycast import Caster
 
 SUN_BLUR = 0.012
 """Radius of the sun over its distance; about twice the real one, as haze makes it."""
@@ -47,7 +47,7 @@ class SunLight:
     """Unit vector toward the sun."""
     irradiance: Float[np.ndarray, "3"]
     """Irradiance of what faces it."""
-    blockers: Caster
+    blockers: RayScene
     """Everything that holds it off, walls and ceiling with their openings too."""
 
     def falling(
@@ -79,7 +79,7 @@ class LampLight:
     intensity: Float[np.ndarray, "3"]
     """Irradiance of what faces it one metre away."""
     radius_m: float
-    blockers: Caster
+    blockers: RayScene
     """Everything that holds it off, but for the lamp itself: its shade lets light through."""
 
     def falling(
@@ -111,7 +111,7 @@ def _where_lit(
     strength: Float32[np.ndarray, "n"],
     origins: Float32[np.ndarray, "n 3"],
     toward: Float32[np.ndarray, "n 3"],
-    blockers: Caster,
+    blockers: RayScene,
     far: float,
 ) -> Float32[np.ndarray, "n"]:
     """Strength of light, 0 where something stands between a place and the light, up to `far` times the ray."""

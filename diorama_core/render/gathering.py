@@ -9,11 +9,12 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.geometry.vectors import dot
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.filters import Neighbours
 from diorama_core.render.lighting import TILE, Effort, Lighting, Spots, irradiance
-from diorama_core.render.raycast import Caster, Grid, bands
+from diorama_core.render.raycast import Grid, bands
 from diorama_core.render.world import World
 from diorama_core.workers import each
 
@@ -27,7 +28,7 @@ ALONE = Effort(window_rays=5, sky_rays=9)
 
 
 def fallen_light(
-    world: World, blockers: Caster, grid: Grid, light: Lighting, effort: Effort, progress: Progress = SILENT
+    world: World, blockers: RayScene, grid: Grid, light: Lighting, effort: Effort, progress: Progress = SILENT
 ) -> Light:
     """Light on every place of a grid; 0 where nothing is seen.
 
@@ -62,7 +63,7 @@ def fallen_light(
     return fallen
 
 
-def _noisy(world: World, blockers: Caster, grid: Grid, rows: slice, light: Lighting, effort: Effort) -> Light:
+def _noisy(world: World, blockers: RayScene, grid: Grid, rows: slice, light: Lighting, effort: Effort) -> Light:
     """Light of some rows, every pixel with its own share of the samples."""
     is_hit = grid.found
     spots = Spots(grid.points[is_hit], grid.normals[is_hit], grid.flat_normals[is_hit], grid.photographed[is_hit])
@@ -114,7 +115,7 @@ def _on_one_surface(pixel: Grid, beside: Grid) -> Bool[np.ndarray, "h w"]:
 
 
 def _alone(
-    world: World, blockers: Caster, grid: Grid, pixels: Int[np.ndarray, "n 2"], light: Lighting
+    world: World, blockers: RayScene, grid: Grid, pixels: Int[np.ndarray, "n 2"], light: Lighting
 ) -> Float32[np.ndarray, "n 3"]:
     """Light of pixels that no neighbour tells."""
     at = (pixels[:, 0], pixels[:, 1])

@@ -13,9 +13,9 @@ from functools import cache
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int
 
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.geometry.vectors import dot, facing, unit
 from diorama_core.render.direct_light import DirectLight
-from diorama_core.render.raycast import Caster
 from diorama_core.render.world import World
 from diorama_core.scene.types import RoomLight
 
@@ -133,7 +133,12 @@ def room_lighting(bounds: Float[np.ndarray, "2 3"], light: RoomLight) -> Lightin
 
 
 def irradiance(
-    world: World, blockers: Caster, spots: Spots, pixels: Int[np.ndarray, "n 2"] | None, light: Lighting, effort: Effort
+    world: World,
+    blockers: RayScene,
+    spots: Spots,
+    pixels: Int[np.ndarray, "n 2"] | None,
+    light: Lighting,
+    effort: Effort,
 ) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
     """Light that falls on places: from the window, and from everywhere else.
 
@@ -187,7 +192,7 @@ def ambient(directions: Float[np.ndarray, "n 3"], light: Lighting) -> Float32[np
 
 
 def _from_window(
-    blockers: Caster, origins: np.ndarray, normals: np.ndarray, sample: np.ndarray, light: Lighting
+    blockers: RayScene, origins: np.ndarray, normals: np.ndarray, sample: np.ndarray, light: Lighting
 ) -> Float32[np.ndarray, "n 3"]:
     target = light.window_centre.astype(np.float32) + (2 * sample - 1) @ light.window_edges.astype(np.float32)
     ray = target - origins

@@ -10,12 +10,13 @@ from jaxtyping import Float, Int32, UInt8
 
 from diorama_core.errors import InputError, SceneError
 from diorama_core.geometry.openings import with_openings
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.geometry.vectors import unit
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.filters import as_bytes, tone_mapped
 from diorama_core.render.lighting import Effort, Lighting, room_lighting, studio
-from diorama_core.render.raycast import Caster, OrthographicView, PinholeView, View, bands, pixel_centres
+from diorama_core.render.raycast import OrthographicView, PinholeView, View, bands, pixel_centres
 from diorama_core.render.scene_light import with_settings
 from diorama_core.render.shading import Shot, shoot
 from diorama_core.render.world import World, scene_world
@@ -79,7 +80,7 @@ def picture(
     return np.concatenate(each(lambda band: _developed(shot, band, exposure), bands(source.height)))
 
 
-def lit(scene: Scene, opened: Scene, library: ShapeLibrary, world: World, view: View) -> tuple[Lighting, Caster]:
+def lit(scene: Scene, opened: Scene, library: ShapeLibrary, world: World, view: View) -> tuple[Lighting, RayScene]:
     """The light of a scene as a person set it, or its own, and what casts shadows in it.
 
     Args:

@@ -10,18 +10,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import trimesh
 from jaxtyping import Bool, Float, Float32, Int, Int32
 
+from diorama_core.geometry.ray_scene import RayArray, RayHits, RayScene
 from diorama_core.geometry.vectors import face_normals, facing
-from diorama_core.io.large_libraries import o3d
 from diorama_core.scene.types import Camera
-
-RayArray = Float32[np.ndarray, "*n 6"]
-"""Origin and direction of each ray in the world; the direction's length is the unit of the hit distance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,27 +35,6 @@ class Buffers:
     def silhouette(self) -> Bool[np.ndarray, "h w"]:
         """Where anything is hit."""
         return self.instance >= 0
-
-
-@dataclass(frozen=True, eq=False)
-class RayHits:
-    """The first meeting of each ray with the triangles; fields have the shape of the rays given."""
-
-    distance: Float32[np.ndarray, "*n"]
-    """In units of the ray's direction; `inf` for a miss."""
-    triangle: Int32[np.ndarray, "*n"]
-    """-1 for a miss."""
-    barycentric: Float32[np.ndarray, "*n 2"]
-    """Weights of the triangle's second and third corner."""
-
-    @property
-    def found(self) -> Bool[np.ndarray, "*n"]:
-        """Whether the ray met anything."""
-        return self.triangle >= 0
-
-    def chosen(self, which: np.ndarray) -> RayHits:
-        """The hits at a mask or at indices."""
-        return RayHits(self.distance[which], self.triangle[which], self.barycentric[which])
 
 
 @dataclass(frozen=True)
@@ -116,35 +91,6 @@ def pixel_centres(width: int, height: int, first_row: int = 0) -> Float[np.ndarr
     return np.stack([x, y], axis=-1)
 
 
-class Caster:
-    """Triangles in the world, ready to be hit. Build once, cast often."""
-
-    def __init__(self, vertices: Float[np.ndarray, "n 3"], triangles: Int32[np.ndarray, "m 3"]) -> None:
-        self._scene = o3d.t.geometry.RaycastingScene()
-        if len(triangles):
-            self._scene.add_triangles(
-                o3d.core.Tensor.from_numpy(np.ascontiguousarray(vertices, dtype=np.float32)),
-                o3d.core.Tensor.from_numpy(np.ascontiguousarray(triangles, dtype=np.uint32)),
-            )
-
-    def first_hits(self, rays: RayArray) -> RayHits:
-        """What every ray meets first."""
-        answer = self._scene.cast_rays(_tensor(rays))
-        return RayHits(
-            answer["t_hit"].numpy(),
-            answer["primitive_ids"].numpy().view(np.int32),
-            answer["primitive_uvs"].numpy(),
-        )
-
-    def occluded(self, rays: RayArray, far: float = np.inf) -> Bool[np.ndarray, "*n"]:
-        """Whether anything lies within `far` units along each ray."""
-        return self._scene.test_occlusions(_tensor(rays), tfar=float(far)).numpy()
-
-
-def _tensor(rays: RayArray) -> Any:
-    return o3d.core.Tensor.from_numpy(np.ascontiguousarray(rays, dtype=np.float32))
-
-
 class MeshCaster:
     """Posed meshes to be seen from many cameras: depth, normals and instance ids without any shading.
 
@@ -160,7 +106,7 @@ class MeshCaster:
             owners.append(np.full(len(mesh.faces), index))
             start += len(mesh.vertices)
         points, faces = np.concatenate(vertices).astype(np.float32), np.concatenate(triangles).astype(np.int32)
-        self._caster = Caster(points, faces)
+        self._caster = RayScene(points, faces)
         self._owner = np.concatenate(owners).astype(np.int32)
         self._normals = face_normals(points, faces)
 

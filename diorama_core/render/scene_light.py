@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.geometry.sun import Daylight, daylight
 from diorama_core.geometry.unseen_walls import closed_room
 from diorama_core.library.record import ShapeLibrary
@@ -16,7 +17,6 @@ from diorama_core.render.appearance import Material, Surface, shape_surfaces
 from diorama_core.render.direct_light import DirectLight, LampLight, SunLight
 from diorama_core.render.lamps import LAMP_LUMENS, WARM, lamp_place, shining_lamps
 from diorama_core.render.lighting import Lighting
-from diorama_core.render.raycast import Caster
 from diorama_core.render.world import World, placed_surfaces
 from diorama_core.scene.types import Scene, SceneObject
 
@@ -86,7 +86,7 @@ def _daytime(scene: Scene, outside: Daylight, bounds: Float[np.ndarray, "2 3"]) 
     )
 
 
-def _blockers(scene: Scene, library: ShapeLibrary, without: set[int]) -> Caster:
+def _blockers(scene: Scene, library: ShapeLibrary, without: set[int]) -> RayScene:
     """Objects, walls and the ceiling, without what lets light through: panes, clear glass, and lamps that shine."""
     placed = [p for p in placed_surfaces(scene, library) if p.instance not in without]
     panes = {number for number, o in enumerate(scene.objects) if o.category in OPENING_CATEGORIES}
@@ -111,7 +111,7 @@ def _bare(surface: Surface) -> Surface:
     return replace(surface, material=Material(alpha=surface.material.alpha))
 
 
-def _lamp(item: SceneObject, library: ShapeLibrary, blockers: Caster) -> LampLight:
+def _lamp(item: SceneObject, library: ShapeLibrary, blockers: RayScene) -> LampLight:
     surfaces = shape_surfaces(library, item.shape_id, scale=relative_scale(item.pose.scale))
     position, radius = lamp_place(item, surfaces)
     return LampLight(position, np.array(WARM) * lamp_strength(item), radius, blockers)

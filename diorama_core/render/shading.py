@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
+from diorama_core.geometry.ray_scene import RayArray, RayScene
 from diorama_core.geometry.vectors import dot, unit
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.filters import tone_mapped
 from diorama_core.render.gathering import fallen_light
 from diorama_core.render.gloss import gloss_share
 from diorama_core.render.lighting import Effort, Lighting, ambient, unshadowed
-from diorama_core.render.raycast import Caster, Grid, RayArray, View, bands, pixel_centres, pixel_footprint
+from diorama_core.render.raycast import Grid, View, bands, pixel_centres, pixel_footprint
 from diorama_core.render.world import Places, World
 from diorama_core.workers import each
 
@@ -36,7 +37,7 @@ class Shot:
 
 
 def shoot(
-    world: World, blockers: Caster, view: View, light: Lighting, effort: Effort, progress: Progress = SILENT
+    world: World, blockers: RayScene, view: View, light: Lighting, effort: Effort, progress: Progress = SILENT
 ) -> Shot:
     """The light that reaches every pixel of a view.
 
@@ -68,7 +69,7 @@ def shoot(
 
 
 def light_map(
-    world: World, blockers: Caster, view: View, light: Lighting, effort: Effort
+    world: World, blockers: RayScene, view: View, light: Lighting, effort: Effort
 ) -> Float32[np.ndarray, "h w 3"]:
     """The light that falls on what every pixel of a view sees, 0 where nothing is; arguments as for `shoot`.
 

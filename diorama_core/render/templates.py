@@ -20,7 +20,7 @@ from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8, UInt16, UInt32
 from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.errors import LibraryError
-from diorama_core.io.large_libraries import o3d
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Camera, Intrinsics
 
@@ -245,8 +245,7 @@ class _UnitCaster:
         self, vertices: Float32[np.ndarray, "n 3"], faces: UInt32[np.ndarray, "m 3"], grid: TemplateGrid
     ) -> None:
         self._grid = grid
-        self._scene = o3d.t.geometry.RaycastingScene(nthreads=1)
-        self._scene.add_triangles(vertices, faces)
+        self._scene = RayScene(vertices, faces, threads=1)
         self._hull = _hull_points(vertices)
         self._rays = grid.rays_camera.reshape(-1, 3)
 
@@ -270,14 +269,14 @@ class _UnitCaster:
         rays = np.empty((len(pixels), 6), np.float32)
         rays[:, :3] = -R[:, 2] * grid.distance
         rays[:, 3:] = self._rays[pixels] @ R.T
-        answer = self._scene.cast_rays(o3d.core.Tensor(rays), nthreads=1)
-        distance = answer["t_hit"].numpy()
+        hits = self._scene.first_hits(rays)
+        distance = hits.distance
         seen = np.flatnonzero(np.isfinite(distance))
         depth.reshape(-1)[pixels[seen]] = _depth_codes(distance[seen], grid)
-        facing = answer["primitive_normals"].numpy()[seen] @ R.astype(np.float32)
+        facing = hits.normal[seen] @ R.astype(np.float32)
         normals.reshape(-1)[pixels[seen]] = _normal_codes(facing, self._rays[pixels[seen]])
         if face_ids is not None:
-            face_ids.reshape(-1)[pixels[seen]] = answer["primitive_ids"].numpy()[seen]
+            face_ids.reshape(-1)[pixels[seen]] = hits.triangle[seen]
 
     def _worth_casting(self, R: Float[np.ndarray, "3 3"]) -> Int[np.ndarray, "p"]:
         """Pixels inside the outline of the convex hull: no other ray can meet the shape."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int, Int32, UInt8
 
+from diorama_core.geometry.ray_scene import RayArray, RayHits, RayScene
 from diorama_core.geometry.vectors import dot, face_normals, facing, unit
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.library.opening import OpenedShapes
@@ -15,7 +16,6 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import relative_scale
 from diorama_core.render.appearance import Surface, shape_surfaces
 from diorama_core.render.lamps import as_lit
-from diorama_core.render.raycast import Caster, RayArray, RayHits
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.types import Scene
 
@@ -77,9 +77,9 @@ class World:
         self._instance_of_face = np.repeat(np.array(owners, dtype=np.int32), counts)
         self._materials = _MaterialTable(surfaces)
         self._face_normals = face_normals(self.vertices, self._faces)
-        self.caster = Caster(self.vertices, self._faces)
+        self.caster = RayScene(self.vertices, self._faces)
 
-    def shadow_caster(self, without: Collection[int] = ()) -> Caster:
+    def shadow_caster(self, without: Collection[int] = ()) -> RayScene:
         """Only what holds light off: clear glass lets it through, and so does what is left out.
 
         Args:
@@ -88,7 +88,7 @@ class World:
         opaque = self._materials.opacity.take(self._surface_of_face) > CLEAR
         if len(without):
             opaque &= ~np.isin(self._instance_of_face, list(without))
-        return self.caster if opaque.all() else Caster(self.vertices, self._faces[opaque])
+        return self.caster if opaque.all() else RayScene(self.vertices, self._faces[opaque])
 
     @property
     def bounds(self) -> Float[np.ndarray, "2 3"]:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import Any
 
 import fcl
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.io.large_libraries import o3d
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene.types import Pose, box_corners
 from diorama_core.scene.values import Vector3
@@ -148,14 +147,8 @@ def _model(mesh: _Mesh, scale: tuple[float, float, float]) -> fcl.BVHModel:
 
 
 @lru_cache(maxsize=512)
-def _caster(mesh: _Mesh) -> Any:
-    vertices, faces = mesh.arrays()
-    scene = o3d.t.geometry.RaycastingScene()
-    scene.add_triangles(
-        o3d.core.Tensor.from_numpy(vertices.astype(np.float32)),
-        o3d.core.Tensor.from_numpy(faces.astype(np.uint32)),
-    )
-    return scene
+def _caster(mesh: _Mesh) -> RayScene:
+    return RayScene(*mesh.arrays())
 
 
 def heights_below(
@@ -170,5 +163,5 @@ def heights_below(
         reach_m: downward.
     """
     down = np.concatenate([points, np.tile([0.0, 0.0, -1.0], (len(points), 1))], axis=1).astype(np.float32)
-    t = _caster(_Mesh(library, shape_id)).cast_rays(o3d.core.Tensor.from_numpy(down))["t_hit"].numpy()
+    t = _caster(_Mesh(library, shape_id)).first_hits(down).distance
     return np.where(t <= reach_m, points[:, 2] - t, -np.inf)

@@ -3,11 +3,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.render.direct_light import DirectLight, LampLight, SunLight
-from diorama_core.render.raycast import Caster
 
-NOTHING = Caster(np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int32))
-LID = Caster(
+NOTHING = RayScene(np.zeros((0, 3), np.float32), np.zeros((0, 3), np.int32))
+LID = RayScene(
     np.array([[-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]], np.float32), np.array([[0, 1, 2], [0, 2, 3]], np.int32)
 )
 UP = np.array([[0, 0, 1]], np.float32)
@@ -27,7 +27,7 @@ def test_the_sun_shines_by_the_cosine_where_nothing_is_in_the_way() -> None:
 
 
 def test_a_lamp_shines_by_the_square_of_its_distance() -> None:
-    def at(height: float, blockers: Caster = NOTHING) -> float:
+    def at(height: float, blockers: RayScene = NOTHING) -> float:
         return float(falling(LampLight(np.array([0.0, 0.0, height]), np.ones(3), 0.001, blockers))[0])
 
     assert at(2.0) == pytest.approx(0.25, rel=0.01)

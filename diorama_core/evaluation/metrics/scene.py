@@ -17,11 +17,12 @@ from diorama_core.evaluation.metrics.pose import Alignment, Placed, object_align
 from diorama_core.evaluation.metrics.shape import shape_distance, shape_points
 from diorama_core.geometry.planes import in_plane_polygon
 from diorama_core.geometry.projection import box_iou
+from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.layout.exact import drift, mesh_overlap_m3, stable_share
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import measure
 from diorama_core.library.record import ShapeLibrary, record_of
-from diorama_core.render.raycast import Caster, MeshCaster
+from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Camera, Intrinsics, Scene, SceneObject
 from diorama_core.synthesis.artefacts import true_supports
@@ -262,7 +263,7 @@ def _gap(item: SceneObject, parent: str, scene: Scene, library: ShapeLibrary) ->
     spots[:, 2] = corners[:, 2].min() + PROBE_M
     rays = np.concatenate([spots, np.tile([0.0, 0.0, -1.0], (len(spots), 1))], axis=1).astype(np.float32)
     mesh = library.mesh(carrier.shape_id)
-    caster = Caster(carrier.pose.apply(np.asarray(mesh.vertices)), np.asarray(mesh.faces, np.int32))
+    caster = RayScene(carrier.pose.apply(np.asarray(mesh.vertices)), np.asarray(mesh.faces, np.int32))
     return float(np.abs(caster.first_hits(rays).distance - PROBE_M).min())
 
 

@@ -122,10 +122,10 @@ def _is_enclosed(room: Room, mesh: trimesh.Trimesh) -> bool:
         return False
     middle = np.array([*outline.mean(axis=0), 0.5 * (low + high)])
     ahead = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
-    from diorama_core.render.raycast import Caster  # Open3D; the editor opens without it
+    from diorama_core.geometry.ray_scene import RayScene  # Open3D; the editor opens without it
 
     rays = np.column_stack([np.tile(middle, (4, 1)), ahead]).astype(np.float32)
-    return bool(Caster(np.asarray(mesh.vertices), np.asarray(mesh.faces, np.int32)).first_hits(rays).found.all())
+    return bool(RayScene(np.asarray(mesh.vertices), np.asarray(mesh.faces, np.int32)).first_hits(rays).found.all())
 
 
 def _reaches_over(part: ConvexPart, room: Room) -> bool:

@@ -28,14 +28,12 @@ Relief = Float32[np.ndarray, "axis=3 end=2 n n"]
 
 def relief(mesh: trimesh.Trimesh) -> Relief:
     """The relief of a mesh in its own frame; the box is stretched to a cube first."""
-    from diorama_core.io.large_libraries import o3d  # a second to load
+    from diorama_core.geometry.ray_scene import RayScene  # a second to load
 
     low, high = mesh.bounds
     unit = (np.asarray(mesh.vertices) - low) / np.maximum(high - low, 1e-12)
-    scene = o3d.t.geometry.RaycastingScene(nthreads=1)
-    scene.add_triangles(unit.astype(np.float32), np.asarray(mesh.faces, dtype=np.uint32))
-    hits = scene.cast_rays(o3d.core.Tensor.from_numpy(_rays()))["t_hit"].numpy()
-    return np.clip(hits - 0.5, 0.0, 1.0).reshape(3, 2, SIDE, SIDE)
+    hits = RayScene(unit, np.asarray(mesh.faces)).first_hits(_rays())
+    return np.clip(hits.distance - 0.5, 0.0, 1.0).reshape(3, 2, SIDE, SIDE)
 
 
 @cache
@@ -99,13 +97,11 @@ def symmetry_fold(mesh: trimesh.Trimesh, pictures: Relief) -> SymmetryFold:
 
 def coincides(mesh: trimesh.Trimesh, fold: int) -> bool:
     """Whether a mesh turned by one of so many equal turns about up lies where it lay before."""
-    from diorama_core.io.large_libraries import o3d  # a second to load
+    from diorama_core.geometry.ray_scene import RayScene  # a second to load
 
-    scene = o3d.t.geometry.RaycastingScene(nthreads=1)
-    scene.add_triangles(np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.uint32))
     points, _ = trimesh.sample.sample_surface(mesh, _POINTS, seed=0)
     moved = np.asarray(points) @ trimesh.transformations.rotation_matrix(2 * np.pi / fold, (0, 0, 1))[:3, :3].T
-    away = scene.compute_distance(o3d.core.Tensor.from_numpy(moved.astype(np.float32)), nthreads=1).numpy()
+    away = RayScene(np.asarray(mesh.vertices), np.asarray(mesh.faces), threads=1).distances(moved)
     return bool(np.quantile(away, _NEARLY_ALL) < _COINCIDES * mesh.extents.max())
 
 
