@@ -13,17 +13,17 @@ from diorama_core.export.plan_dxf import dxf_text
 from diorama_core.export.plan_pdf import pdf_bytes
 from diorama_core.export.plan_sheet import plan_sheet
 from diorama_core.export.plan_svg import svg_text
-from diorama_core.progress import Progress
+from diorama_core.progress import SILENT, Progress
 
 
-def write_plan(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_plan(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write the floor plan of each storey; raises `ExportError` when it cannot be written."""
-    _write(scene.name, floor_plans(scene), Path(path), progress or Progress())
+    _write(scene.name, floor_plans(scene), Path(path), progress)
 
 
-def write_elevations(scene: ExportScene, path: Path, progress: Progress | None = None) -> None:
+def write_elevations(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write a drawing of each wall, by room; raises `ExportError` when it cannot be written."""
-    _write(scene.name, elevations(scene), Path(path), progress or Progress())
+    _write(scene.name, elevations(scene), Path(path), progress)
 
 
 def _write(name: str, drawings: Sequence[FloorPlan], path: Path, progress: Progress) -> None:
