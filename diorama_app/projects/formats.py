@@ -68,7 +68,7 @@ GUIDES: Mapping[str, Guide] = {
     "svg": Guide(PLANS, "Chromium, Inkscape; made for other browsers and Illustrator", _FURNITURE),
     "pdf": Guide(PLANS, "poppler; made for any PDF viewer, prints to scale", _FURNITURE),
     "dxf": Guide(PLANS, "LibreCAD; made for AutoCAD and QCAD", _FURNITURE),
-    "elevations": Guide(PLANS, "poppler, Chromium, LibreCAD; made for the same programs as the plans", _FURNITURE),
+    "elevations": Guide(PLANS, "poppler, Chromium, LibreCAD; made for the same programs as the plans", frozenset()),
     "csv": Guide(PLANS, "LibreOffice Calc; made for other spreadsheets", _FURNITURE),
     "xlsx": Guide(PLANS, "LibreOffice Calc; made for other spreadsheets, with pictures", _FURNITURE),
     "sh3d": Guide(PLANS, "version 7.0.2; made for 5.3 and newer", _FURNITURE | frozenset[Choice]({"textures"})),

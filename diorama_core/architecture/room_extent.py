@@ -15,6 +15,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.openings import DOOR
 from diorama_core.geometry.planes import clip_polygon, in_polygon, signed_area
 from diorama_core.library import taxonomy
 from diorama_core.scene.room_edits import ceiling_height, move_plane, set_ceiling_height
@@ -158,7 +159,7 @@ def _at_backs(scene: Scene, feet_seen: Collection[str] | None, objects_measured:
     ]
     for wall in scene.architecture.by_role("wall"):
         against = [scene.object(s.child) for s in edges if wall.id in s.adheres_to]
-        against += [o for o in _hanging(scene, wall.id) if objects_measured or o.category == "door"]
+        against += [o for o in _hanging(scene, wall.id) if objects_measured or o.category == DOOR]
         others = [
             item
             for s in edges

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from diorama_app.cli import main
-from diorama_app.cli.export import PICTURE_PX
+from diorama_app.cli.variants import PICTURE_PX
 from diorama_core.project.storage import Project
 from tests.export.scenes import scene_of
 
