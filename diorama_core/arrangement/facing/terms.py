@@ -38,6 +38,7 @@ class FacingWeights:
     back_at_wall_others: float
     out_of_wall: float
     as_told: float
+    leaning: float
     at_middle: float
     as_carrier: float
     side_by_side: float
@@ -182,6 +183,19 @@ def as_measured(room: FacingRoom, i: int) -> Agreement | None:
     return toward(room, i, room.objects[i].axes[0]) if room.objects[i].front_known else None
 
 
+def leaning(room: FacingRoom, i: int) -> Agreement | None:
+    """Pillows lean on the head of a bed, or on the back of a seat: across its length, to the camera's side."""
+    item = room.objects[i]
+    if item.kind != "pillow" or item.carrier is None:
+        return None
+    carrier = room.objects[item.carrier]
+    on_bed = carrier.kind in BEDS
+    long = int(np.argmax(carrier.size_m[:2]))
+    axis = carrier.axes[long if on_bed else 1 - long]
+    inward = carrier.centre[:2] - item.centre[:2] if on_bed else room.toward_camera(i)
+    return toward(room, i, axis if axis @ inward >= 0 else -axis)
+
+
 def at_middle(room: FacingRoom, i: int) -> Agreement | None:
     """Furniture faces the middle of what is in the room; seats face what they serve."""
     item = room.objects[i]
@@ -230,6 +244,7 @@ TERMS: tuple[Term, ...] = (
     Term("back_at_wall_others", "backs are at walls", back_at_wall(None)),
     Term("out_of_wall", "what hangs on a wall looks out of it", out_of_wall),
     Term("as_told", "the front was given", as_measured),
+    Term("leaning", "pillows lean on the back of what they lie on", leaning),
     Term("at_middle", "furniture faces the middle of the room", at_middle),
     Term("as_carrier", "what stands on furniture faces as that does", pair=as_carrier),
     Term("side_by_side", "objects of a kind side by side face the same way", pair=side_by_side),

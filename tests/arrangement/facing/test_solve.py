@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from diorama_core.arrangement.facing.evidence import HEADINGS, UNSEEN, FacingRoom
+from diorama_core.arrangement.facing.evidence import HEADINGS, FacingRoom
 from diorama_core.arrangement.facing.solve import Factors, solve
 from diorama_core.arrangement.facing.terms import FacingWeights, facing_weights
 from tests.arrangement.facing.rooms import heading_deg, room, thing
@@ -36,7 +36,7 @@ def test_the_decision_is_the_likeliest_of_all(seed: int) -> None:
 def row_of_chairs() -> FacingRoom:
     """Behind a long table, seen from its other side: the pictures of two tell nothing, one seems turned away."""
     table = thing("table", 0.0, 3.0, (0.9, 3.0, 0.7), 90.0)
-    away = np.full(HEADINGS, UNSEEN)
+    away = np.full(HEADINGS, -5.0)
     away[[0, 12]] = 0.0, 1.0
     chairs = [thing("chair", x, 3.8, picture=away if x == 0.0 else np.zeros(HEADINGS)) for x in (-0.8, 0.0, 0.8)]
     return room(*chairs, table)

@@ -80,6 +80,14 @@ def test_what_hangs_looks_out_of_its_wall_and_what_was_told_holds() -> None:
     assert best_deg("as_told", room(thing("desk", 0.0, 3.0, turn_deg=90.0, front_known=True))) == 90
 
 
+def test_pillows_lean_across_a_sofa_and_along_a_bed() -> None:
+    sofa, bed = thing("sofa", -2.0, 3.0, (0.9, 2.2, 0.8), 0.0), thing("bed", 2.0, 3.0, (2.0, 1.6, 0.6), 0.0)
+    on_sofa = thing("pillow", -2.0, 3.3, (0.2, 0.5, 0.4), 90.0, carrier=2)
+    on_bed = thing("pillow", 1.3, 3.0, (0.2, 0.5, 0.4), 90.0, carrier=3)
+    seen = room(on_sofa, on_bed, sofa, bed)
+    assert [best_deg("leaning", seen, i) for i in (0, 1)] == [0, 0]
+
+
 def test_furniture_faces_the_middle_and_seats_do_not() -> None:
     others = (thing("plant", 2.0, 3.0), thing("plant", 3.0, 3.0))
     assert best_deg("at_middle", room(thing("dresser", 0.0, 3.0), *others)) == 0
