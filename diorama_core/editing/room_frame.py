@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.editing.footprints import Quad, footprints
+from diorama_core.geometry.openings import DOOR
 from diorama_core.library.taxonomy import category
 from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Plane, Scene, SceneObject
@@ -158,7 +159,7 @@ def door_floors(objects: Iterable[SceneObject]) -> list[Quad]:
     """The floor before every door."""
     floors = []
     for item in objects:
-        if item.category == "door":
+        if item.category == DOOR:
             yaw = item.pose.yaw_rad
             ahead = np.array([np.cos(yaw), np.sin(yaw)]) * SWING_M / 2
             size = np.array([SWING_M, item.size_m[1]])
