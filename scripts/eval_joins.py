@@ -45,6 +45,7 @@ LEAST_PIXELS = 1500
 
 
 def main() -> None:
+    """Measure the joins that the command line asks for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--pairs", type=int, default=6, help="of each series")
     parser.add_argument("--seeds", default="development")
@@ -64,6 +65,7 @@ Room = tuple[TruthView, SceneObject, Scene]
 
 
 def kept(seed: int, count: int, folder: Path | None) -> Iterator[tuple[Room, Room]]:
+    """Pairs of rooms as they were built before, where the folder has them; built and written to it otherwise."""
     path = None if folder is None else folder / f"{seed}-{count}.pickle"
     if path is not None and path.exists():
         yield from pickle.loads(path.read_bytes())
@@ -119,11 +121,13 @@ def photo_of_door(scene: Scene, seed: int) -> tuple[TruthView, SceneObject]:
 
 
 def seen_walls(view: TruthView) -> list[Plane]:
+    """Planes of the room that the picture shows enough of."""
     planes = view.scene.architecture.planes
     return [p for k, p in enumerate(planes) if (view.plane_ids == k).sum() > LEAST_PIXELS]
 
 
 def measured(first: Room, second: Room) -> tuple[float, float, float]:
+    """Metres that the door is off, degrees of the turn, and metres that the camera is off; large where no door was built."""
     doors = [built_door(*room) for room in (first, second)]
     if doors[0] is None or doors[1] is None:
         return 9.0, 90.0, 9.0
@@ -139,6 +143,7 @@ def measured(first: Room, second: Room) -> tuple[float, float, float]:
 
 
 def view_of(scene: Scene) -> Float[np.ndarray, "4 4"]:
+    """The pose of the scene's camera in its world."""
     assert scene.camera is not None
     return scene.camera.T_world_camera
 

@@ -116,7 +116,7 @@ def test_what_is_put_into_a_home_comes_to_the_room_looked_at(home: tuple[MadeHom
         assert room_around(scene, seen, {r.id for r in scene.rooms if r != room}).rooms != (room,)
         after, heads = pasted_at(scene, copied(scene, [table.id]), seen)
         assert {rooms_of_objects(after)[i] for i in heads} == {room.id}
-        assert {after.support_of(i).parent for i in heads} == {room.floor}  # type: ignore[union-attr]
+        assert {edge.parent for edge in after.supports if edge.child in heads} == {room.floor}
         lowest = min(float(after.object(i).corners_world[:, 2].min()) for i in heads)
         assert lowest == pytest.approx(float(floor.centre[2]), abs=1e-6)
         x, y = free_spot(part, library.shape(table.shape_id), seen)
