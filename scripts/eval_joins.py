@@ -127,7 +127,7 @@ def seen_walls(view: TruthView) -> list[Plane]:
 
 
 def measured(first: Room, second: Room) -> tuple[float, float, float]:
-    """Metres that the door is off, degrees of the turn, and metres that the camera is off; large where no door was built."""
+    """Metres the door is off, degrees of the turn, metres the camera is off; all large where no door was built."""
     doors = [built_door(*room) for room in (first, second)]
     if doors[0] is None or doors[1] is None:
         return 9.0, 90.0, 9.0
