@@ -20,7 +20,7 @@ from diorama_core.project.storage import Project
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.splits import Subset
 
-OF_A_KIND = 4
+OF_A_KIND = 2
 SEATS: Final = "few-seats"
 """Name of the stored library, for commands and servers that are given one."""
 

@@ -36,7 +36,7 @@ CONFIGURATION = BeartypeConf(is_pep484_tower=True, violation_type=jaxtyping.Type
 """A whole number is a `float` too, as static checkers have it."""
 
 
-CHECKED_CALLS = 5
+CHECKED_CALLS = 2
 """Of each function, in each test."""
 _calls: dict[int, list[int]] = {}
 """By a function's code, how often it was called in this test."""

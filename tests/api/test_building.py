@@ -49,12 +49,23 @@ def test_one_stage_can_be_replaced_and_products_are_done_by_one_thread(room: dio
     assert wider.scene.camera.intrinsics.fx == pytest.approx(0.8 * room.scene.camera.intrinsics.fx)
 
 
-def test_remarks_reach_the_caller_and_are_recorded() -> None:
+def test_remarks_and_progress_reach_the_caller_and_a_library_can_be_given() -> None:
     said: list[str] = []
+    events: list[ProgressEvent] = []
     odd = [{"bbox": [250, 20, 400, 140], "class": "floor lamp"}]
-    built = diorama.build(room_picture(), boxes=odd, profile="embedded", warn=said.append, camera_height_m=2.0)
+    built = diorama.build(
+        room_picture(),
+        boxes=odd,
+        library=built_in_library(),
+        warn=said.append,
+        camera_height_m=2.0,
+        progress=Progress(events.append),
+    )
     assert said
     assert tuple(said) == built.warnings
+    assert built.library_name is None
+    assert events[-1].fraction == pytest.approx(1.0)
+    assert [e.fraction for e in events] == sorted(e.fraction for e in events)
     assert built.scene.camera is not None
     assert built.scene.camera.position[2] - floor_height(built.scene) == pytest.approx(2.0)
     assert built.scene.scale_sigma == KNOWN_LENGTH_SIGMA
@@ -63,11 +74,3 @@ def test_remarks_reach_the_caller_and_are_recorded() -> None:
 def test_a_camera_stands_in_a_room() -> None:
     with pytest.raises(InputError, match="200 m above the floor is not possible"):
         diorama.build(room_picture(), boxes=BOXES, profile="embedded", camera_height_m=200.0)
-
-
-def test_progress_is_reported_and_a_library_can_be_given() -> None:
-    events: list[ProgressEvent] = []
-    built = diorama.build(room_picture(), boxes=BOXES[:1], library=built_in_library(), progress=Progress(events.append))
-    assert events[-1].fraction == pytest.approx(1.0)
-    assert [e.fraction for e in events] == sorted(e.fraction for e in events)
-    assert built.library_name is None

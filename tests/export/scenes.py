@@ -24,8 +24,9 @@ DESK = "desk-writing-oak"
 SOURCES = ("example", "primitives", "fittings", "boxes", "empty shell")
 
 
+@cache
 def gathered(source: str, **options: object) -> ExportScene:
-    """One of `SOURCES`, gathered."""
+    """One of `SOURCES`, gathered once for all tests of a process: nothing of it is changed."""
     scene, library = scene_of(source)
     textures = Project(_EXAMPLE).textures(scene) if source == "example" else {}
     return gather(scene, library, textures=textures, options=ExportOptions(**options), name=source)

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-import pytest
 
 from diorama_core.export import export_scene
 from diorama_core.export.environment import environment_of
@@ -22,4 +21,4 @@ def test_a_file_holds_the_radiance(tmp_path: Path) -> None:
     assert read.dtype == np.float32
     truth = environment_of(gathered)
     assert read.shape == truth.shape
-    assert read[..., ::-1] == pytest.approx(truth, abs=0.01)
+    np.testing.assert_allclose(read[..., ::-1], truth, rtol=1e-6, atol=0.01)

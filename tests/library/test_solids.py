@@ -115,15 +115,11 @@ def test_places_are_rows_in_order_also_where_one_number_cannot_tell_them(points:
 def normals_by_definition(faces: np.ndarray, doubled: np.ndarray, crease_rad: float) -> np.ndarray:
     """For every corner the sum over all faces at its vertex that meet its own face within the angle."""
     n = solids.unit(doubled)
-    sums = [
-        sum(
-            (doubled[g] for g in range(len(faces)) if vertex in faces[g] and n[f] @ n[g] > np.cos(crease_rad)),
-            np.zeros(3),
-        )
-        for f in range(len(faces))
-        for vertex in faces[f]
-    ]
-    return solids.unit(np.array(sums))
+    near = n @ n.T > np.cos(crease_rad)
+    corners = [(f, vertex) for f in range(len(faces)) for vertex in faces[f]]
+    return solids.unit(
+        np.array([doubled[near[f] & (faces == vertex).any(axis=1)].sum(axis=0) for f, vertex in corners])
+    )
 
 
 @pytest.mark.parametrize("crease_deg", [20.0, 38.0, 70.0, 180.0])

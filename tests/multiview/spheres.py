@@ -47,10 +47,10 @@ def room_sphere(
 
 def sphere_with_wardrobe(height_m: float) -> tuple[bytes, bytes]:
     """A PNG of the box with a wardrobe against a wall, and its box as JSON; the camera is so high above the floor."""
-    picture = room_sphere(BOX, 0.85, width=1600)
+    picture = room_sphere(BOX, 0.85)
     size, centre = np.array([0.6, 1.0, 2.0]), np.array([2.1 * height_m - 0.3, 0.3, 1.0 - height_m])
     corners = centre + size / 2 * np.stack(np.meshgrid([-1, 1], [-1, 1], [-1, 1]), axis=-1).reshape(-1, 3)
-    at = sphere_pixels(corners, 1600)
+    at = sphere_pixels(corners, picture.shape[1])
     x1, y1, x2, y2 = (round(float(v)) for v in (*at.min(axis=0), *at.max(axis=0)))
     picture[y1:y2, x1:x2] = [150, 110, 70]
     encoded = io.BytesIO()

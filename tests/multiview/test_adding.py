@@ -33,11 +33,11 @@ def _few_distances(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def choose(inputs: Inputs) -> Stages:
-    return embedded_stages(inputs, few_shapes())
+    return embedded_stages(inputs, few_shapes(of_a_kind=4))
 
 
 def added(scene: Scene, movable: frozenset[str]) -> AddedPhoto:
-    photos, library = two_photos(SMALL), few_shapes(scene)
+    photos, library = two_photos(SMALL), few_shapes(scene, of_a_kind=4)
     known = photos_of_scene(scene, photos.first, ())
     return with_photo(
         scene, known, with_camera(photos), movable, movable, library, choose,

@@ -22,6 +22,7 @@ from diorama_core.pipeline.presets import stages_for
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
 from tests.cli.room_photo import room_picture
+from tests.few_shapes import stored_seats
 from tests.multiview.colmap_files import write_colmap
 from tests.multiview.rooms import CAMERAS, THINGS, photo
 from tests.multiview.spheres import BOX, sphere_with_wardrobe
@@ -51,7 +52,7 @@ def folder(tmp_path: Path) -> Path:
 @pytest.mark.slow
 def test_photos_with_cameras_become_one_project(folder: Path, tmp_path: Path, capsys) -> None:
     command = ["build", str(folder), "--poses", str(tmp_path / "model"), "-o", str(tmp_path / "room")]
-    assert main([*command, "--profile", "embedded", "--json"]) == 0
+    assert main([*command, "--profile", "embedded", "--library", stored_seats(), "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
     assert len(said["objects"]) == len(SHOWN)
     assert said["in_several"] == len(SHOWN)

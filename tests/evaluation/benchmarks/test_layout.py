@@ -5,13 +5,13 @@ import json
 import pytest
 
 from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.layout import run
+from diorama_core.evaluation.benchmarks import layout
 from diorama_core.progress import CancelToken, Progress
 
 
-@pytest.mark.slow
-def test_tables_are_whole() -> None:
-    result = run(scenes=1, seed=3)
+def test_tables_are_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(layout, "ROOM", 8)
+    result = layout.run(scenes=1, seed=3)
     feasible = result.ablation[-1]
     assert feasible.name == "feasible"
     assert feasible.structure == 1.0
@@ -27,4 +27,4 @@ def test_cancels() -> None:
     token = CancelToken()
     token.cancel()
     with pytest.raises(Cancelled):
-        run(scenes=1, progress=Progress(token=token))
+        layout.run(scenes=1, progress=Progress(token=token))

@@ -88,7 +88,7 @@ def test_a_folder_of_scan2cad_is_built_and_fills_the_table_by_category(tmp_path)
     still = {"translation": [0.0, 0.0, 0.0], "rotation": [1.0, 0.0, 0.0, 0.0], "scale": [1.0, 1.0, 1.0]}
     record = {"id_scan": "scene0000_00", "trs": still, "aligned_models": [_scan2cad_model(o) for o in seen]}
     (tmp_path / "full_annotations.json").write_text(json.dumps([record]))
-    bench = run("scan2cad", tmp_path, few_shapes(view.scene, of_a_kind=2), 3)
+    bench = run("scan2cad", tmp_path, few_shapes(view.scene), 3)
     (result,) = bench.results
     assert result.failure == ""
     assert result.asked == len(seen)
@@ -109,7 +109,7 @@ def test_kinds_of_things_have_scan2cads_classes(ours, theirs):
 
 def test_a_folder_of_ssdb_is_built_and_measured(ssdb):
     folder, room, count = ssdb
-    bench = run("ssdb", folder, few_shapes(room, of_a_kind=2), 3)
+    bench = run("ssdb", folder, few_shapes(room), 3)
     (result,) = bench.results
     assert result.failure == ""
     assert (result.asked, result.found) == (count, count)

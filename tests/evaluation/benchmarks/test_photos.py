@@ -11,8 +11,8 @@ from PIL import Image
 
 from diorama_app.cli import main
 from diorama_core.errors import InputError
-from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations
-from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan, run
+from diorama_core.evaluation.adapters.photo_annotations import read_annotations
+from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.synthesis import furnished_room, render_truth, sample_cameras
 
@@ -119,18 +119,3 @@ def test_the_projects_own_annotations_can_be_read_and_name_known_kinds():
     objects = [annotated for photo in photos.values() for annotated in photo.objects]
     assert all(annotated.bbox[0] < annotated.bbox[2] and annotated.bbox[1] < annotated.bbox[3] for annotated in objects)
     assert {"chair", "table"} <= {annotated.word for annotated in objects if annotated.loose}
-
-
-@pytest.mark.slow
-def test_a_real_photo_has_the_right_kinds(shared, tmp_path):
-    """Few of its things are marked: a door, a picture, cabinets and what stands on one of them."""
-    folder, few = shared / "photos", tmp_path / "annotations.json"
-    document = json.loads(ANNOTATIONS.read_text())["sunrgbd_corridor"]
-    things = [{**t, "on": t["on"] - 2 if isinstance(t["on"], int) else t["on"]} for t in document["things"][2:8]]
-    few.write_text(json.dumps({"sunrgbd_corridor": {**document, "things": things}}))
-    if picture_of(folder, "sunrgbd_corridor") is None:
-        pytest.skip("the photo sunrgbd_corridor is not here")
-    bench = run(plan([PhotoSource(few, folder)]), built_in_library())
-    row = bench.tables()[0].row("all")
-    assert row["kind first"] > 0.7
-    assert row["supporter"] > 0.7

@@ -95,7 +95,7 @@ def test_a_room_is_built_from_two_photos(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(views, "sphere_photo", marked_sphere)
     monkeypatch.setattr(views, "layout_recipe", lambda *given, **more: AsItIs())
     monkeypatch.setattr(
-        views, "split_library", lambda whole, *of: few_shapes(of_a_kind=2) if len(of) > 1 else split_library(whole, *of)
+        views, "split_library", lambda whole, *of: few_shapes() if len(of) > 1 else split_library(whole, *of)
     )
     bench = run(built_in_library(), 1, SEED, counts=(2,))
     assert [r.way for r in bench.results] == [ALONE, "2 photos with their cameras", SPHERE]

@@ -16,7 +16,7 @@ from diorama_core.synthesis import ROOM_KINDS, TruthView, furnished_room, render
 from tests.perception.language.stub_lmm import StubLmm, answering
 
 SIZE = (320, 240)
-SEEDS = range(3)
+SEEDS = range(2)
 AT_LEAST = 0.85
 """Over 24 rooms it is .90 with and without depth (`diorama bench relations`); of few it varies by some .05."""
 
@@ -35,13 +35,13 @@ def views() -> list[TruthView]:
 
 def test_supporters_are_right_with_depth(views: list[TruthView]) -> None:
     count = sum((relations_of(v, with_depth=True) for v in views), RelationCount())
-    assert count.total > 25
+    assert count.total > 15
     assert count.accuracy >= AT_LEAST, count.mistakes
 
 
 def test_supporters_are_right_from_a_photo_alone(views: list[TruthView]) -> None:
     count = sum((relations_of(v, with_depth=False) for v in views), RelationCount())
-    assert count.total > 25
+    assert count.total > 15
     assert count.accuracy >= AT_LEAST, count.mistakes
 
 
