@@ -46,9 +46,8 @@ class SupportChoice:
     """The supporter that was chosen for an object, and why."""
 
     hypothesis: SupportHypothesis
-    runner_up: SupportHypothesis | None
     shares: dict[str, float]
-    """By term, how much more speaks against the runner-up than against the choice, nats."""
+    """By term, how much more speaks against the next likeliest than against the choice, nats."""
     probabilities: Mapping[str, float]
     """By supporter how likely it is, all other objects staying."""
 
@@ -70,10 +69,9 @@ class DecidedSupports:
 
 
 def chosen_supports(
-    hypotheses: dict[str, tuple[SupportHypothesis, ...]], weights: SupportWeights | None = None
+    hypotheses: dict[str, tuple[SupportHypothesis, ...]], weights: SupportWeights
 ) -> dict[str, SupportChoice]:
     """The support of every object that has hypotheses, such that all together cost least and there is no cycle."""
-    weights = weights or fitted_weights()
     costs = {name: np.array([weights.cost(h) for h in of_one]) for name, of_one in hypotheses.items() if of_one}
     graph = nx.DiGraph()
     by_edge: dict[tuple[str, str], int] = {}
@@ -98,11 +96,10 @@ def _choice(
     others = [k for k in np.argsort(costs, kind="stable").tolist() if k != chosen]
     weights_of_terms = weights.shares(of_one[chosen])
     shares = {} if not others else {n: v - weights_of_terms[n] for n, v in weights.shares(of_one[others[0]]).items()}
-    second = of_one[others[0]] if others else None
     probabilities: dict[str, float] = {}
     for hypothesis, share in zip(of_one, (likely / likely.sum()).tolist(), strict=True):
         probabilities[hypothesis.edge.parent] = probabilities.get(hypothesis.edge.parent, 0.0) + share
-    return SupportChoice(of_one[chosen], second, shares, probabilities)
+    return SupportChoice(of_one[chosen], shares, probabilities)
 
 
 def with_decided_supports(

@@ -203,7 +203,7 @@ def _object(names: _Names, box: MeasuredBox, object_id: str, library: ShapeLibra
     possible = possible_kinds(mounted, box.size_m) or possible_kinds(box.kinds, box.size_m) or {UNKNOWN.name: 1.0}
     senses = dict(possible) if box.kinds_know_size else likeliest_kind(possible, box.size_m)
     kind = max(senses, key=lambda k: (senses[k], k))
-    query = RetrievalQuery(kind, box.size_m, False, mount, senses)
+    query = RetrievalQuery(kind, box.size_m, False, senses)
     ranked = sorted(
         (
             (m.kind_factor * float(np.exp(-size_cost(m.shape.size_m, box.size_m))) * _fit(box, m.shape), m.shape)

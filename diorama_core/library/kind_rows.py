@@ -143,10 +143,6 @@ class Category:
     # how usual it is, and what is taken for it
     frequency: float | None = None
     """How often a thing in a room is one, of a hundred."""
-    usual: bool = False
-    """Whether an unnamed thing is likely one; the others are found in kitchens, bathrooms and offices."""
-    unnamed_cost: float | None = None
-    """Cost of reading unnamed furniture that nobody looked at as one."""
     also_said_of: Mapping[str, float] | None = None
     """Further categories that its name is used for, with the costs of those readings."""
     related: tuple[str, ...] | None = None

@@ -158,7 +158,6 @@ class HierarchicalRetrieval:
     ) -> list[Pool]:
         """One pool per group of alike objects."""
         holders = {s.parent for s in supports}
-        parent_of = {s.child: s.parent for s in supports}
         pools = []
         for group in range(max(groups, default=-1) + 1):
             members = [i for i, g in enumerate(groups) if g == group]
@@ -167,7 +166,6 @@ class HierarchicalRetrieval:
                 category=first.category,
                 size_m=np.exp(np.median([np.log(np.maximum(sizes_m[i], 1e-3)) for i in members], axis=0)),
                 supports_objects=any(measured[i].id in holders for i in members),
-                supported_by=parent_of.get(first.id, "floor"),
                 senses=_mean_senses([senses[i] for i in members]),
                 named=is_named(first.label),
             )

@@ -1,4 +1,4 @@
-"""Which shapes are worth looking at for an object: its category's, near kinds where those are few, plain ones else.
+"""Which shapes are worth looking at for an object: its kinds', and near kinds' where those are few.
 
 Things that hold other things up draw from their own pool: shapes with a surface to stand on and nothing on it yet
 (paper, section 3.2: shapes with clutter baked in must not support anything).
@@ -7,7 +7,7 @@ Things that hold other things up draw from their own pool: shapes with a surface
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -42,10 +42,6 @@ def _alike_in_size(name: str, settings: PoolSettings = SETTINGS.pools) -> tuple[
     return tuple(others[i].name for i in np.argsort(unlike, kind="stable")[: settings.substitutes])
 
 
-USUAL = frozenset(c.name for c in CATEGORIES if c.usual)
-"""What an unnamed thing in a room most likely is; the rest are found in kitchens, bathrooms and offices."""
-
-
 @dataclass(frozen=True)
 class Pooled:
     """A shape that may stand for an object, and how well its kind fits (1: the very category)."""
@@ -73,20 +69,15 @@ class RetrievalQuery(ArrayValue):
     """Observed extents along x, y, z of the object frame."""
     supports_objects: bool
     """Whether something stands on it: then only shapes with a surface are taken, if any are."""
-    supported_by: str
-    """What holds it up: "floor", "wall", "ceiling" or an object's id."""
-    senses: Mapping[str, float] = field(default_factory=dict)
-    """How likely its word means each kind, views apart; by default its category alone."""
+    senses: Mapping[str, float]
+    """How likely its word means each kind, views apart."""
     named: bool = True
     """Whether a word says what it is: the category of a thing without one is a guess."""
 
 
 def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSettings = SETTINGS.pools) -> Pool:
     """Shapes worth comparing with the picture, some dozens; nearest sizes where there are more."""
-    if query.category == UNKNOWN.name and not query.senses:
-        return Pool(_plausible(library, query, settings))
-    senses = dict(query.senses) or {query.category: 1.0}
-    best = max(senses.values())
+    senses, best = query.senses, max(query.senses.values())
     members: list[Pooled] = []
     least = 1 if query.named else settings.min_unnamed
     for rank, (kind, share) in enumerate(sorted(senses.items(), key=lambda row: (-row[1], row[0]))):
@@ -108,7 +99,10 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSetting
     if is_known:
         return Pool(tuple(members))
     note = f"no {query.category} among the shapes; the nearest kinds were taken"
-    return Pool(tuple(members) or _plausible(library, query, settings), note)
+    if not members:
+        usable = _usable(library, library.shapes(), query)
+        members = [Pooled(shape, 1.0) for shape in _nearest(usable, query.size_m, settings.named_pool, settings)]
+    return Pool(tuple(members), note)
 
 
 def sense_factor(share: float, settings: PoolSettings = SETTINGS.pools) -> float:
@@ -132,28 +126,6 @@ def _nearest(
     """The shapes nearest in size, either way round, in a stable order."""
     order = np.argsort([_fit_cost(s, size_m, settings) for s in shapes], kind="stable")[:most]
     return [shapes[i] for i in sorted(order)]
-
-
-def _plausible(
-    library: ShapeLibrary, query: RetrievalQuery, settings: PoolSettings = SETTINGS.pools
-) -> tuple[Pooled, ...]:
-    """For something unnamed: the two shapes nearest in size of every kind that is about as large.
-
-    Kinds that hang or stand like it, the usual ones first in line; plain boxes always.
-    """
-    mounts = {"wall": ("wall",), "ceiling": ("ceiling",)}.get(query.supported_by, ("floor", "surface"))
-    hung = [s for s in library.shapes() if category(s.category).mount in mounts] or list(library.shapes())
-    wanted = np.log(np.maximum(query.size_m, settings.min_m))
-    overall = [abs(float((np.log(np.maximum(s.size_m, settings.min_m)) - wanted).mean())) for s in hung]
-    lifelike = [s for s, difference in zip(hung, overall, strict=True) if difference < settings.same_size_log]
-    usable = _usable(library, lifelike or hung, query)
-    members: list[Pooled] = []
-    for kind in dict.fromkeys(s.category for s in usable):
-        factor = 1.0 if kind == "box" else settings.usual_factor if kind in USUAL else settings.rare_factor
-        same = [s for s in usable if s.category == kind]
-        members += [Pooled(s, factor) for s in _nearest(same, query.size_m, settings.each_kind, settings)]
-    order = np.argsort([_fit_cost(m.shape, query.size_m, settings) for m in members], kind="stable")
-    return tuple(members[i] for i in order[: settings.unnamed_pool])
 
 
 def _fit_cost(shape: Shape, size_m: np.ndarray, settings: PoolSettings = SETTINGS.pools) -> float:

@@ -90,8 +90,6 @@ class PoolSettings:
     """Shapes of one kind; the paper's text query keeps as many."""
     enough: int = 4
     related_factor: float = 0.6
-    usual_factor: float = 0.92
-    rare_factor: float = 0.68
     other_pool: int = 14
     """Shapes of every other kind that the word may mean."""
     unnamed_each: int = 5
@@ -106,9 +104,6 @@ class PoolSettings:
     """How sharply views tell kinds apart: agreeing better by a factor f makes up for a kind less likely by f to
     this."""
     substitutes: int = 3
-    unnamed_pool: int = 30
-    each_kind: int = 2
-    same_size_log: float = 0.4
     min_m: float = 0.01
 
 

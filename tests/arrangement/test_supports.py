@@ -59,13 +59,7 @@ def test_a_change_is_told_in_words_and_by_terms(room: Room) -> None:
     scene = room.scene(camera=looking_north())
     found = with_decided_supports(scene, LIBRARY, MEASURED, SupportEvidence.of(scene, {cup: {table: 1.0}}))
     assert found.notes == (f"support changed: {cup} rests on {table}, not the wall",)
-    choice = found.choices[cup]
-    assert choice.runner_up is not None
-    assert choice.shares["seen below"] > 0.0
-    weights = fitted_weights()
-    assert sum(choice.shares.values()) == pytest.approx(
-        weights.cost(choice.runner_up) - weights.cost(choice.hypothesis)
-    )
+    assert found.choices[cup].shares["seen below"] > 0.0
 
 
 def test_what_agrees_already_stays_as_it_is(room: Room) -> None:

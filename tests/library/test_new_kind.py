@@ -26,7 +26,7 @@ from diorama_core.library.kinds import sizes_of_kind
 from diorama_core.library.labels import understand_label
 from diorama_core.library.taxonomy import having, lies_on_furniture, resolve
 from diorama_core.retrieval.pools import RetrievalQuery, pool_for
-pool = pool_for(built_in_library(), RetrievalQuery("aquarium", np.array((0.4, 0.8, 0.5)), False, "surface"))
+pool = pool_for(built_in_library(), RetrievalQuery("aquarium", np.array((0.4, 0.8, 0.5)), False, {"aquarium": 1.0}))
 print(json.dumps({
     "words": [resolve(word).category.name for word in ("aquarium", "fish tanks", "old terrarium")],
     "label": understand_label("Fish_Tank").category.name,

@@ -17,8 +17,8 @@ from diorama_core.retrieval.pools import (
 LIBRARY = built_in_library()
 
 
-def pool(name: str, size, supported_by: str = "floor", holds: bool = False):
-    return pool_for(LIBRARY, RetrievalQuery(name, np.array(size), holds, supported_by))
+def pool(name: str, size, holds: bool = False):
+    return pool_for(LIBRARY, RetrievalQuery(name, np.array(size), holds, {name: 1.0}))
 
 
 def test_every_category_knows_its_near_kinds() -> None:
@@ -30,7 +30,7 @@ def test_every_category_knows_its_near_kinds() -> None:
 
 def test_kinds_that_a_word_may_mean_are_looked_at_the_likelier_the_more_they_count() -> None:
     senses = {"chair": 0.6, "office chair": 0.3, "recliner": 0.001}
-    found = pool_for(LIBRARY, RetrievalQuery("chair", np.array((0.5, 0.5, 0.9)), False, "floor", senses))
+    found = pool_for(LIBRARY, RetrievalQuery("chair", np.array((0.5, 0.5, 0.9)), False, senses))
     factors = {m.shape.category: m.kind_factor for m in found.members}
     assert factors == {"chair": 1.0, "office chair": sense_factor(0.5)}
     assert sense_factor(0.1) < sense_factor(0.5) < 1.0
@@ -40,8 +40,8 @@ def test_many_kinds_are_looked_at_where_no_word_says_what_an_object_is() -> None
     kinds = ("chair", "stool", "table", "bench", "sofa", "bed", "desk", "plant", "box", "basket")
     senses = {kind: 0.9 if kind == "chair" else 0.01 for kind in kinds}
     size = np.array((0.5, 0.5, 0.9))
-    unnamed = pool_for(LIBRARY, RetrievalQuery("chair", size, False, "floor", senses, named=False))
-    named = pool_for(LIBRARY, RetrievalQuery("chair", size, False, "floor", senses))
+    unnamed = pool_for(LIBRARY, RetrievalQuery("chair", size, False, senses, named=False))
+    named = pool_for(LIBRARY, RetrievalQuery("chair", size, False, senses))
     assert {m.shape.category for m in unnamed.members} == set(kinds)
     assert {m.shape.category for m in named.members} == {"chair"}
 
@@ -57,17 +57,3 @@ def test_every_category_finds_something_in_the_built_in_library() -> None:
 def test_a_chair_is_looked_for_among_chairs_only() -> None:
     found = pool("chair", (0.5, 0.5, 0.9))
     assert {m.shape.category for m in found.members} == {"chair"}
-
-
-def test_unnamed_objects_hang_or_stand_as_they_were_seen() -> None:
-    on_wall, below, standing = (
-        pool("object", (0.1, 0.8, 0.7), supporter) for supporter in ("wall", "ceiling", "floor")
-    )
-    assert {category(m.shape.category).mount for m in on_wall.members} == {"wall"}
-    assert {category(m.shape.category).mount for m in below.members} == {"ceiling"}
-    assert {category(m.shape.category).mount for m in standing.members} <= {"floor", "surface"}
-
-
-def test_unnamed_objects_are_about_as_large_as_what_they_are_taken_for() -> None:
-    for member in pool("object", (0.9, 1.9, 0.8)).members:
-        assert abs(np.log(np.prod(member.shape.size_m) / (0.9 * 1.9 * 0.8))) < 1.3

@@ -53,8 +53,6 @@ _COSTS: Mapping[str, Mapping[Mount, float]] = {
     "ceiling": {"floor": _NEVER, "surface": _NEVER, "wall": _NEVER, "ceiling": 0.0},
 }
 """What speaks against a thing being held in a place, by how things of its kind are usually held."""
-_UNNAMED_COSTS = {"on top": 4.0, "floor": 0.0, "wall": 5.0, "ceiling": 6.0}
-"""Costs for a thing without a name that nobody looked at."""
 _SCREENS = having("screen")
 _RUGS = having("rug")
 _FIXED_TO_WALLS = having("fixed_to_wall")
@@ -409,8 +407,6 @@ def _held_cost(observations: BoxObservations, index: int, where: str, settings: 
     category, meanings, costs = observations.categories[index], observations.meanings[index], _COSTS[where]
     if category is not UNKNOWN:
         return costs[category.mount]
-    if not meanings:
-        return _UNNAMED_COSTS[where]
     likely = sum(share * float(np.exp(-costs[taxonomy.category(kind).mount] / 2)) for kind, share in meanings)
     return -2.0 * float(np.log(likely + settings.hardly))
 

@@ -1,7 +1,7 @@
 """How big a thing may be: the modes of its size, read from the taxonomy.
 
 A general word covers more than its own row ("table" is also said of coffee tables), and a thing without a name is one
-of the kinds that it looks like, or else of the usual furniture; each such reading is a further mode at a price.
+of the kinds that it may be; each such reading is a further mode at a price.
 """
 
 from __future__ import annotations
@@ -14,16 +14,11 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.library.kinds import outline_of, sizes_of_kind
-from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Mount, SizePrior, category, column
+from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Mount, category, column
 from diorama_core.perception.metrology.settings import SETTINGS, PlacementSettings
 
 _ALSO: Mapping[str, Mapping[str, float]] = column("also_said_of")
 """Category: further categories it is used for, with the cost of that reading."""
-
-_UNNAMED: Mapping[str, float] = column("unnamed_cost")
-"""What unnamed furniture may be that nobody looked at, with the cost of the rarer kinds."""
-_USUAL_SPREAD = 3 * np.log(0.16)
-"""Sum of the logarithms of the sigmas of an ordinary category: wider ones explain anything, and pay for it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,28 +52,36 @@ def size_modes(
         meanings: kinds that the word may mean with their probabilities; what it is generally said of when empty.
     """
     if name == UNKNOWN.name:
-        return (
-            *(_modes_held(meanings, "floor", settings) or _usual_furniture(settings)),
-            _mode(UNKNOWN.name, settings.unnamed_anything_cost),
-        )
+        return (*modes_held(name, meanings, "floor", settings), *_anything(settings))
     if meanings:
         return _own_modes(name) + _modes_of_meanings(name, meanings, settings)
     return _own_modes(name) + tuple(_mode(kind, cost) for kind, cost in _ALSO.get(name, {}).items())
 
 
-def _usual_furniture(settings: PlacementSettings) -> tuple[SizeMode, ...]:
-    return tuple(
-        _mode(kind, cost + _breadth_cost(category(kind).priors[0]), settings.unnamed_widened)
-        for kind, cost in _UNNAMED.items()
-    )
-
-
-def _modes_held(
-    meanings: tuple[tuple[str, float], ...], mount: Mount, settings: PlacementSettings
+@cache
+def modes_held(
+    name: str,
+    meanings: tuple[tuple[str, float], ...],
+    mount: Mount,
+    settings: PlacementSettings = SETTINGS.placement,
 ) -> tuple[SizeMode, ...]:
-    """The likeliest modes of the likeliest kinds that a thing without a name may be and that are so mounted."""
+    """The modes of a thing that is so mounted; of one without a name those of the likeliest kinds that are.
+
+    Args:
+        name: of the category.
+        meanings: kinds that the word may mean with their probabilities.
+        mount: what holds the thing.
+        settings: of placement.
+    """
+    if name != UNKNOWN.name:
+        return size_modes(name, settings=settings)
     kinds = [(kind, share) for kind, share in meanings if category(kind).mount == mount]
-    return tuple(_rarer(kind, share, *kinds[0]) for kind, share in kinds[: settings.max_meanings + 1])
+    modes = tuple(_rarer(kind, share, *kinds[0]) for kind, share in kinds[: settings.max_meanings + 1])
+    return modes or _anything(settings)
+
+
+def _anything(settings: PlacementSettings) -> tuple[SizeMode]:
+    return (_mode(UNKNOWN.name, settings.unnamed_anything_cost),)
 
 
 def _modes_of_meanings(
@@ -121,40 +124,6 @@ def standing_costs(name: str, mode: SizeMode, settings: PlacementSettings = SETT
     return 2.0 * float(np.logaddexp(0.0, raised)), 2.0 * float(np.logaddexp(0.0, -raised))
 
 
-@cache
-def supported_modes(
-    name: str, meanings: tuple[tuple[str, float], ...] = (), settings: PlacementSettings = SETTINGS.placement
-) -> tuple[SizeMode, ...]:
-    """The modes of a thing that lies on another; unnamed ones that nobody looked at are small there."""
-    if name == UNKNOWN.name:
-        return _modes_held(meanings, "surface", settings) or (
-            plain_mode(np.log([0.2, 0.24, 0.24]), np.array([0.7, 0.7, 0.7]), 0.0, name),
-        )
-    return size_modes(name, settings=settings)
-
-
-@cache
-def hung_modes(
-    name: str, meanings: tuple[tuple[str, float], ...] = (), settings: PlacementSettings = SETTINGS.placement
-) -> tuple[SizeMode, ...]:
-    """The modes of a thing on a wall; unnamed ones that nobody looked at are flat there."""
-    if name == UNKNOWN.name:
-        return _modes_held(meanings, "wall", settings) or (
-            plain_mode(np.log([0.05, 0.8, 0.7]), np.array([0.4, 0.5, 0.5]), 0.0, name),
-        )
-    return size_modes(name, settings=settings)
-
-
-@cache
-def hanging_modes(
-    name: str, meanings: tuple[tuple[str, float], ...] = (), settings: PlacementSettings = SETTINGS.placement
-) -> tuple[SizeMode, ...]:
-    """The modes of a thing below the ceiling; unnamed ones that nobody looked at are lamps there."""
-    if name == UNKNOWN.name:
-        return _modes_held(meanings, "ceiling", settings) or (_mode("ceiling lamp", 0.0, settings.unnamed_widened),)
-    return size_modes(name, settings=settings)
-
-
 def _own_modes(name: str) -> tuple[SizeMode, ...]:
     """A mixture of the library's usual sizes of a kind and the taxonomy's broader ones, by log density."""
     parts = sizes_of_kind(name)
@@ -182,11 +151,6 @@ def plain_mode(log_size: Float[np.ndarray, "3"], sigma: Float[np.ndarray, "3"], 
     return SizeMode(log_size, sigma, cost, outline_of(name), np.diag(1.0 / sigma))
 
 
-def _breadth_cost(prior: SizePrior) -> float:
-    """Twice the difference of log densities at the mode between an ordinary category and this one."""
-    return max(0.0, 2.0 * float(np.log(prior.log_sigma_xyz).sum() - _USUAL_SPREAD))
-
-
-def _mode(name: str, cost: float, widened: float = 1.0) -> SizeMode:
+def _mode(name: str, cost: float) -> SizeMode:
     prior = category(name).priors[0]
-    return plain_mode(prior.log_median_xyz, prior.log_sigma_xyz * widened, cost, name)
+    return plain_mode(prior.log_median_xyz, prior.log_sigma_xyz, cost, name)

@@ -169,17 +169,6 @@ class Values:
         self.bounds_px[chosen], self.visible[chosen] = anew.bounds_px, anew.visible
 
 
-def residuals(unknowns: Float[np.ndarray, "n 6"], problems: Problems, view: View) -> Float[np.ndarray, "n r"]:
-    """Everything that speaks against a row's cuboid, in sigmas.
-
-    Args:
-        unknowns: of every row's cuboid.
-        problems: what was seen of every row's object, and what is expected.
-        view: intrinsics, and rotation from camera to world.
-    """
-    return values(unknowns, problems, view, settings=SETTINGS.fit).residuals
-
-
 def values(
     unknowns: Float[np.ndarray, "n 6"],
     problems: Problems,

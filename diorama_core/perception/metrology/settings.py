@@ -128,7 +128,6 @@ class PlacementSettings:
     wall_top_sigma_m: float = 0.5
     middle_m: float = 1.4
     middle_sigma_m: float = 0.4
-    unnamed_widened: float = 1.3
     unnamed_anything_cost: float = 6.0
     min_share: float = 0.03
     max_meanings: int = 4

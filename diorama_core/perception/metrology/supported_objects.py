@@ -18,13 +18,7 @@ from diorama_core.library.taxonomy import (
     often_carried,
 )
 from diorama_core.perception.metrology.box_observations import BoxObservations
-from diorama_core.perception.metrology.priors import (
-    SizeMode,
-    hanging_modes,
-    hung_modes,
-    standing_costs,
-    supported_modes,
-)
+from diorama_core.perception.metrology.priors import SizeMode, modes_held, standing_costs
 from diorama_core.perception.metrology.problem import Cuboids, Problems
 from diorama_core.perception.metrology.rows import row
 from diorama_core.perception.metrology.settings import SETTINGS, MetrologySettings, PlacementSettings
@@ -131,7 +125,7 @@ def place_on(
     rows = []
     odd = observations.categories[parent].seat_height_m is not None and often_carried(*names[::-1]) <= SELDOM_CARRIED
     for base, sigma, level_cost in _levels(observations, parent, tall, odd, settings.placement):
-        for mode in supported_modes(names[1], observations.meanings[index], settings.placement):
+        for mode in modes_held(names[1], observations.meanings[index], "surface", settings.placement):
             raised = standing_costs(names[1], mode, settings.placement)[1] - (
                 FLOOR_OBJECT_COST if names[1] in PORTABLE else 0.0
             )
@@ -242,7 +236,7 @@ def place_on_wall(
             extra=mode.cost + side_cost + cost,
             settings=settings.fit,
         )
-        for mode in hung_modes(category.name, observations.meanings[index], settings.placement)
+        for mode in modes_held(category.name, observations.meanings[index], "wall", settings.placement)
         for yaw, wall, sigma, side_cost in walls
     ]
 
@@ -270,6 +264,7 @@ def place_below_ceiling(
         cost: of hanging there, in nats.
         settings: of metrology.
     """
+    category = observations.categories[index]
     return [
         row(
             observations,
@@ -286,6 +281,6 @@ def place_below_ceiling(
             extra=mode.cost + cost,
             settings=settings.fit,
         )
-        for mode in hanging_modes(observations.categories[index].name, observations.meanings[index], settings.placement)
+        for mode in modes_held(category.name, observations.meanings[index], "ceiling", settings.placement)
         for yaw in ((0.0,) if mode.square else (0.0, np.pi / 2))
     ]

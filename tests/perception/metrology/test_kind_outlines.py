@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from diorama_core.artefacts import DetectedObject
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.priors import size_modes
-from diorama_core.perception.metrology.problem import EDGES, Problems, View, residuals, values
+from diorama_core.perception.metrology.problem import EDGES, Problems, View, values
 from diorama_core.perception.metrology.rows import row
 from diorama_core.perception.metrology.solver import solve
 from diorama_core.scene.types import Intrinsics, box_corners
@@ -51,8 +51,8 @@ def test_outlines_stay_within_their_cuboids(distance_m: float, category: str) ->
 def test_a_larger_world_projects_alike(scale: float, distance_m: float) -> None:
     """Only the priors tell scale: that is what carrying solutions from height to height rests on."""
     here, there = problem(height_m=1.5), problem(height_m=1.5 * scale)
-    a = residuals(unknowns(distance_m), here, VIEW)[0, EDGES]
-    b = residuals(unknowns(distance_m, scale), there, VIEW)[0, EDGES]
+    a = values(unknowns(distance_m), here, VIEW).residuals[0, EDGES]
+    b = values(unknowns(distance_m, scale), there, VIEW).residuals[0, EDGES]
     assert np.allclose(a, b, atol=1e-6)
 
 
@@ -65,7 +65,7 @@ def test_what_is_behind_the_camera_has_no_known_outline() -> None:
 def test_solutions_keep_their_bounds_and_never_grow_worse(height_m: float) -> None:
     batch = problem(height_m=height_m)
     start = unknowns(3.0)
-    before = (residuals(start, batch, VIEW) ** 2).sum()
+    before = (values(start, batch, VIEW).residuals ** 2).sum()
     found = solve(batch, start, VIEW)
     assert found.cost[0] <= before + batch.extra[0] + 1e-9
     reach = 2.0 * batch.log_size_sigma[0] + 1e-9
@@ -82,6 +82,6 @@ def test_extents_that_grow_together_cost_less_than_those_that_do_not() -> None:
     alike, against = base.copy(), base.copy()
     alike[0, 2:4] += 0.1
     against[0, 2:4] += [0.1, -0.1]
-    costs = [(residuals(u, together, VIEW)[0, prior] ** 2).sum() for u in (alike, against)]
+    costs = [(values(u, together, VIEW).residuals[0, prior] ** 2).sum() for u in (alike, against)]
     assert costs[0] == pytest.approx(0.02 / 0.07)
     assert costs[1] == pytest.approx(0.02 / 0.01)

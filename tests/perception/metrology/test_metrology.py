@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, DetectedObject, Inputs, ObjectGeometry, Photo
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.kinds import outline_of
+from diorama_core.library.labels import meanings
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.progress import Progress
 from diorama_core.provenance import CameraSource
@@ -62,7 +63,10 @@ def seen(items: tuple[RequestedObject, ...], R: np.ndarray, height_m: float) -> 
 
 
 def detected(name: str, category: str, box: tuple, mask_id: int = 1) -> DetectedObject:
-    return DetectedObject(name, category, category, box, np.zeros((480, 640), dtype=bool), mask_id, 0.1)
+    may_be = tuple(meanings(category, category).items()) if category == "object" else ()
+    return DetectedObject(
+        name, category, category, box, np.zeros((480, 640), dtype=bool), mask_id, 0.1, meanings=may_be
+    )
 
 
 def measure(objects: tuple[DetectedObject, ...], *rotations: np.ndarray) -> ObjectGeometry:

@@ -21,8 +21,8 @@ from diorama_core.perception.metrology.problem import (
     View,
     corners_camera,
     cuboids,
-    residuals,
     stacked,
+    values,
 )
 from diorama_core.perception.metrology.rows import row
 from diorama_core.perception.metrology.settings import SETTINGS
@@ -80,15 +80,15 @@ def test_corners_in_the_camera_frame_are_those_of_the_posed_cuboid() -> None:
 
 
 def test_nothing_speaks_against_the_true_cuboid() -> None:
-    np.testing.assert_allclose(residuals(unknowns(), problem(), VIEW), 0.0, atol=1e-5)
+    np.testing.assert_allclose(values(unknowns(), problem(), VIEW).residuals, 0.0, atol=1e-5)
 
 
 def test_sizes_and_heights_are_measured_in_their_sigmas() -> None:
-    found = residuals(unknowns(size=SIZE * np.exp([0.2, -0.4, 0.0])), problem(), VIEW)[0]
+    found = values(unknowns(size=SIZE * np.exp([0.2, -0.4, 0.0])), problem(), VIEW).residuals[0]
     assert found[SIZES] == pytest.approx([1.0, -2.0, 0.0])
     lifted = unknowns()
     lifted[0, 5] = 1.5
-    raised = residuals(lifted, problem(base_sigma_m=0.1, top_m=0.8, top_sigma_m=0.05), VIEW)[0]
+    raised = values(lifted, problem(base_sigma_m=0.1, top_m=0.8, top_sigma_m=0.05), VIEW).residuals[0]
     assert raised[BASE] == 1.5
     assert raised[TOP] == pytest.approx(3.0)
 
@@ -98,7 +98,7 @@ def left_edge(shift: float, odds: float = 0.0, hidden_px: float = 0.0) -> float:
     true = problem().box_px[0]
     moved = problem(box=true).changed(box_px=true + np.array([shift, 0.0, 0.0, 0.0]))
     rows = moved.changed(hidden_px=[hidden_px] * 4, hidden_odds=[odds] * 4)
-    return float(residuals(unknowns(), rows, VIEW)[0, 0])
+    return float(values(unknowns(), rows, VIEW).residuals[0, 0])
 
 
 def test_edges_are_robust() -> None:
@@ -130,14 +130,17 @@ def test_nothing_goes_on_farther_than_something_may_hide_it() -> None:
 
 def test_a_cuboid_that_the_camera_cannot_see_is_refused_dearly() -> None:
     upward = View(K, rotation(-75.0))
-    unseen, seen = residuals(unknowns(), problem(), upward)[0, EDGES], residuals(unknowns(), problem(), VIEW)[0, EDGES]
+    unseen, seen = (
+        values(unknowns(), problem(), upward).residuals[0, EDGES],
+        values(unknowns(), problem(), VIEW).residuals[0, EDGES],
+    )
     assert np.abs(seen).max() < 1e-6
     assert (unseen**2).sum() > 2.0 * SETTINGS.fit.invisible_penalty**2
 
 
 def test_reaching_beyond_the_picture_costs_against_the_box() -> None:
     inside = problem(cut_sigma=1.0)
-    out = residuals(unknowns(ASIDE), inside, VIEW)[0]
+    out = values(unknowns(ASIDE), inside, VIEW).residuals[0]
     corners = cuboid_corners(ASIDE[None], np.array([-np.pi / 2]), SIZE[None])[0] - [0, 0, HEIGHT]
     camera = corners @ VIEW.R_world_camera
     beyond = (camera[:, 0] / camera[:, 2] * K.fx + K.cx).max() - K.width
@@ -150,14 +153,14 @@ def test_a_base_beyond_its_supporter_costs_by_how_far(yaw, off) -> None:
     c, s = np.cos(yaw), np.sin(yaw)
     middle = CENTRE[:2] - off * np.array([c, s])
     rested = problem(yaw=yaw, footprint=np.array([*middle, yaw, 1.0, 2.0]), footprint_sigma_m=0.1)
-    found = residuals(unknowns(), rested, VIEW)[0, FOOTPRINT]
+    found = values(unknowns(), rested, VIEW).residuals[0, FOOTPRINT]
     assert found == pytest.approx([max(abs(off) - 0.7, 0.0) / 0.1, 0.0], abs=1e-6)
 
 
 def test_a_back_off_its_wall_costs_more_when_nearer() -> None:
     # Facing the camera from ahead, its back is 3.3 m away.
     def off(wall_m: float) -> float:
-        return float(residuals(unknowns(), problem(wall_m=wall_m, wall_sigma=0.3), VIEW)[0, WALL])
+        return float(values(unknowns(), problem(wall_m=wall_m, wall_sigma=0.3), VIEW).residuals[0, WALL])
 
     assert off(3.3) == pytest.approx(0.0, abs=1e-9)
     assert off(3.3 / np.exp(0.3)) == pytest.approx(1.0)
@@ -165,9 +168,9 @@ def test_a_back_off_its_wall_costs_more_when_nearer() -> None:
 
 
 def test_far_places_are_doubted() -> None:
-    assert residuals(unknowns(CENTRE * [1, 1.9, 1]), problem(), VIEW)[0, FAR] == 0.0
+    assert values(unknowns(CENTRE * [1, 1.9, 1]), problem(), VIEW).residuals[0, FAR] == 0.0
     away = np.array([0.0, 6.0 * np.exp(0.15), 0.4])
-    assert residuals(unknowns(away), problem(), VIEW)[0, FAR] == pytest.approx(1.0)
+    assert values(unknowns(away), problem(), VIEW).residuals[0, FAR] == pytest.approx(1.0)
 
 
 def test_rows_are_stacked_chosen_and_changed() -> None:

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.perception.metrology import solver
-from diorama_core.perception.metrology.problem import cuboids, residuals, stacked
+from diorama_core.perception.metrology.problem import cuboids, stacked, values
 from diorama_core.perception.metrology.solver import solve
 from tests.perception.metrology.test_problem import CENTRE, SIZE, VIEW, problem, unknowns
 
@@ -25,7 +25,7 @@ def test_the_true_cuboid_is_found_from_afar(dx, ahead, grown) -> None:
 def test_cost_never_rises_and_counts_the_rows_own_assumptions() -> None:
     start = unknowns(CENTRE * [1, 1.5, 1])
     costs = [float(solve(problem(), start, VIEW, n).cost[0]) for n in range(6)]
-    assert costs[0] == pytest.approx(float((residuals(start, problem(), VIEW) ** 2).sum()))
+    assert costs[0] == pytest.approx(float((values(start, problem(), VIEW).residuals ** 2).sum()))
     assert all(b <= a for a, b in pairwise(costs))
     assert solve(problem(extra=3.0), start, VIEW, 5).cost[0] == pytest.approx(costs[5] + 3.0)
 
