@@ -17,7 +17,7 @@ from diorama_core.appearance.irradiance import irradiance_map
 from diorama_core.appearance.light import SHINING, estimated_light
 from diorama_core.appearance.matched_brightness import brightened, brightness_gains
 from diorama_core.appearance.room_cues import SETTINGS, toward_window, wall_shade
-from diorama_core.appearance.sets import SETS, shared_materials
+from diorama_core.appearance.sets import shared_materials
 from diorama_core.appearance.surface_materials import (
     ROUGHNESS,
     SlotPixels,
@@ -33,7 +33,7 @@ from diorama_core.library.paint import physically_based
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.slots import Slot, slots_of
 from diorama_core.library.stretch import relative_scale, stretched_parts
-from diorama_core.library.taxonomy import LAMPS
+from diorama_core.library.taxonomy import LAMPS, SETS
 from diorama_core.scene.types import Camera, PhotoMaterial, RoomLight, Scene, SceneObject
 from diorama_core.workers import each
 

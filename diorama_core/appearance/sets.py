@@ -7,11 +7,8 @@ from collections.abc import Mapping, Sequence
 import cv2
 import numpy as np
 
-from diorama_core.library.taxonomy import having
 from diorama_core.scene.types import PhotoMaterial
 
-SETS = having("in_sets")
-"""Categories whose equal shapes in one room are a set."""
 _AGREE = 18.0
 """Colours of a set this near each other (CIELAB, lightness at half weight) are one colour in other light."""
 _OWN_VOICE = 0.4

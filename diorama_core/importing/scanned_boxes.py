@@ -29,7 +29,7 @@ from diorama_core.importing.measured_types import (
     MeasuredBox,
     MeasuredOpening,
 )
-from diorama_core.library.taxonomy import CARRIED_KINDS, CATEGORIES, UNKNOWN, having
+from diorama_core.library.taxonomy import CARRIED_KINDS, CATEGORIES, RUGS, UNKNOWN
 from diorama_core.scene.types import yaw_rotation
 
 OFF_M = 0.06
@@ -59,7 +59,6 @@ MAX_BOXES = 200
 AT_WALL_M = 0.4
 GUESS = 0.4
 """Confidence in a kind that no word tells."""
-RUGS = having("rug")
 UNLIKELY = (UNKNOWN.name, *OPENING_CATEGORIES, "curtain", "rug")
 MAX_DEVIATION = 1.4826
 """Standard deviations in a median absolute deviation of normal noise."""

@@ -102,6 +102,9 @@ def column(name: str) -> Mapping[str, Any]:
 AGAINST_WALLS = having("back_at_wall")
 """Categories whose backs stand at walls."""
 LAMPS = having("lamp")
+RUGS = having("rug")
+SETS = having("in_sets")
+"""What comes in sets of one shape in a room; its books and pictures are different ones."""
 PORTABLE = having("portable")
 """What stands on the floor or on furniture, by its size."""
 NEVER_OPEN = having("never_open")

@@ -72,12 +72,12 @@ class Illuminant:
         return np.asarray(np.clip(linear_to_srgb(srgb_to_linear(np.asarray(srgb)) * gains), 0.0, 1.0))
 
 
-def estimate_illuminant(rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray, "h w"] | None = None) -> Illuminant:
+def estimate_illuminant(rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray, "h w"]) -> Illuminant:
     """The light of a photo of a room.
 
     Args:
         rgb: the photo, sRGB.
-        walls: pixels of its walls and ceiling, where they are known.
+        walls: pixels of its walls and ceiling.
     """
     small, of_walls = _reduced(rgb, walls)
     light = srgb_to_linear(small / 255.0)
@@ -93,13 +93,11 @@ def estimate_illuminant(rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray,
 
 
 def _reduced(
-    rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray, "h w"] | None
+    rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray, "h w"]
 ) -> tuple[UInt8[np.ndarray, "a b 3"], Bool[np.ndarray, "a b"]]:
     scale = min(1.0, SETTINGS.side_px / max(rgb.shape[:2]))
     size = max(1, round(rgb.shape[1] * scale)), max(1, round(rgb.shape[0] * scale))
     small = cv2.resize(rgb, size, interpolation=cv2.INTER_AREA)
-    if walls is None:
-        return small, np.zeros(small.shape[:2], dtype=bool)
     share = cv2.resize(walls.astype(np.float32), size, interpolation=cv2.INTER_AREA)
     return small, share > 0.99
 

@@ -10,10 +10,10 @@ import numpy as np
 from jaxtyping import Bool, UInt8
 
 from diorama_core.appearance.light import SHINING
-from diorama_core.appearance.sets import SETS, Colour, leaders
+from diorama_core.appearance.sets import Colour, leaders
 from diorama_core.architecture.texture.colours import GRID_PX, object_pixels, visible_planes
 from diorama_core.artefacts import DetectedObject, Inputs
-from diorama_core.library.taxonomy import LAMPS, having
+from diorama_core.library.taxonomy import LAMPS, SETS, having
 from diorama_core.perception.illuminant import Illuminant, estimate_illuminant
 from diorama_core.scene.types import Architecture, Camera
 

@@ -16,13 +16,12 @@ from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.library.labels import is_named
 from diorama_core.library.record import Shape
-from diorama_core.library.taxonomy import NEVER_OPEN, category
+from diorama_core.library.taxonomy import NEVER_OPEN, SETS, category
 from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
 from diorama_core.pose.details import Details
 from diorama_core.pose.hypotheses import Anchor, anchor_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
-from diorama_core.pose.sets import SETS
 from diorama_core.pose.settings import SETTINGS, PoseSearchSettings, PoseSettings
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.scene.types import Candidate, Pose

@@ -11,10 +11,9 @@ from diorama_core.artefacts import Cuboid, DepthMap, DetectedObject, Inputs, Obj
 from diorama_core.geometry.observed import observe_among
 from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
-from diorama_core.library.taxonomy import NEVER_OPEN
+from diorama_core.library.taxonomy import NEVER_OPEN, SETS
 from diorama_core.pose.details import InnerEdges
 from diorama_core.pose.mask_observations import Evidence
-from diorama_core.pose.sets import SETS
 from diorama_core.pose.settings import SETTINGS, PoseSettings
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.scene.types import Pose

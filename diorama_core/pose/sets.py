@@ -7,11 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.library.taxonomy import UNKNOWN, having
+from diorama_core.library.taxonomy import SETS, UNKNOWN
 from diorama_core.pose.settings import SETTINGS, PoseSearchSettings
-
-SETS = having("in_sets")
-"""What comes in sets; books and pictures of one room are different ones."""
 
 
 def agreed_ranks(

@@ -54,7 +54,7 @@ def test_a_painted_wall_is_not_taken_for_light():
 
 @pytest.mark.parametrize("value", [0, 255])
 def test_a_picture_without_information_has_white_light(value):
-    assert estimate_illuminant(np.full((50, 60, 3), value, np.uint8)) == Illuminant()
+    assert estimate_illuminant(np.full((50, 60, 3), value, np.uint8), np.zeros((50, 60), dtype=bool)) == Illuminant()
 
 
 @given(st.lists(st.floats(0.05, 0.7), min_size=3, max_size=3), st.floats(0.8, 1.2), st.floats(0.8, 1.2))

@@ -17,11 +17,10 @@ from jaxtyping import Bool, Float, Float32, Int, UInt8
 
 from diorama_core.architecture.texture.quilting import broad_shading
 from diorama_core.artefacts import DetectedObject
-from diorama_core.library.taxonomy import having
+from diorama_core.library.taxonomy import RUGS
 
 _CELL_LAB = np.array([14.0, 8.0, 8.0])
 """Colours within about this much are one material in light and shade."""
-_RUGS = having("rug")
 _USUAL_LAB = np.array([58.0, 5.0, 12.0])
 """Floors' colours in a photo whose brightest parts are white: wood, carpet, tiles; hardly black, white or blue."""
 _USUAL_AXES = np.array([[1.0, 0.0, 0.0], [0.0, 0.45, 0.89], [0.0, 0.89, -0.45]]) / np.array([[24.0], [20.0], [9.0]])
@@ -103,7 +102,7 @@ def contact_pixels(shape: tuple[int, int], objects: Sequence[DetectedObject]) ->
             contacts[rows[inside], columns[inside]] = True
     for item in objects:
         contacts &= ~item.mask
-        if item.category in _RUGS and item.mask_confidence < 1.0:
+        if item.category in RUGS and item.mask_confidence < 1.0:
             x1, y1, x2, y2 = (max(round(v), 0) for v in item.box)
             contacts[y1:y2, x1:x2] = False
     return contacts

@@ -16,7 +16,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import Cuboid, DetectedObject, Inputs, ObjectGeometry, SceneGraph
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.library.taxonomy import STACKED_ON, UNKNOWN, WITH_BOARDS, Category, having
+from diorama_core.library.taxonomy import RUGS, STACKED_ON, UNKNOWN, WITH_BOARDS, Category, having
 from diorama_core.perception.graph.object_observations import (
     SETTINGS,
     GeometricGraphSettings,
@@ -34,7 +34,6 @@ _PRIOR: dict[str, tuple[float, float, float, float]] = {
     "ceiling": (9.0, 9.0, 5.0, 0.0),
 }
 _NEVER_ON_OBJECTS = having("never_on_objects")
-_RUGS = having("rug")
 
 
 @dataclass(frozen=True)
@@ -124,7 +123,7 @@ def _ceiling_cost(obj: ObjectSurroundings, settings: GeometricGraphSettings) -> 
 
 def _carried_cost(obj: ObjectSurroundings, other: ObjectSurroundings, settings: GeometricGraphSettings) -> float:
     """How badly an object would rest on another's top, seat or shelves."""
-    if other.category.name in _RUGS:
+    if other.category.name in RUGS:
         return _on_rug_cost(obj, other, settings)
     above = obj.below.get(other.id, 0.0)
     carries = other.category.supports_objects or other.category is UNKNOWN

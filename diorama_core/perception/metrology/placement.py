@@ -13,6 +13,8 @@ from diorama_core.library import taxonomy
 from diorama_core.library.taxonomy import (
     AGAINST_WALLS,
     PORTABLE,
+    RUGS,
+    SETS,
     STACKED_ON,
     UNKNOWN,
     Category,
@@ -54,14 +56,11 @@ _COSTS: Mapping[str, Mapping[Mount, float]] = {
 }
 """What speaks against a thing being held in a place, by how things of its kind are usually held."""
 _SCREENS = having("screen")
-_RUGS = having("rug")
 _FIXED_TO_WALLS = having("fixed_to_wall")
 _NEVER_ON_OBJECTS = having("never_on_objects")
 """Things that never stand on others."""
 _HUNG_CARRIERS = frozenset(kind for kind in column("carries_as") if find_category(kind).mount == "wall")
 """What hangs on walls and carries things."""
-SETS = having("in_sets")
-"""What often comes in sets of one shape on the floor of one room."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -315,7 +314,7 @@ def _supported_rows(
     if np.isfinite(on_top) and category.name not in _NEVER_ON_OBJECTS:
         for parent in parents:
             cost = on_top + _unlikely_parent_cost(category, observations.categories[parent], settings.placement)
-            if observations.categories[parent].name in _RUGS:  # what lies on it is as good as on the floor
+            if observations.categories[parent].name in RUGS:  # what lies on it is as good as on the floor
                 cost += _floor_cost(observations, index, settings.placement)
             options.append(
                 (parent, place_on(observations, index, parent, carriers[parent].cuboid, height_m, cost, settings))
@@ -394,7 +393,7 @@ def _often_carries(observations: BoxObservations, parent: int, index: int) -> bo
 
 def _carriers(observations: BoxObservations, index: int, settings: PlacementSettings) -> list[int]:
     """What may hold a thing above the floor."""
-    return [j for j in _possible_parents(observations, index, settings) if observations.categories[j].name not in _RUGS]
+    return [j for j in _possible_parents(observations, index, settings) if observations.categories[j].name not in RUGS]
 
 
 def _possible_parents(observations: BoxObservations, index: int, settings: PlacementSettings) -> list[int]:
