@@ -45,7 +45,6 @@ class Found:
     item: SceneObject
     """Its id is the asked one."""
     support: Support | None
-    detected: DetectedObject
     pictures: Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
     """Textures of its materials from the photo, by name."""
     as_built: bool
@@ -218,7 +217,7 @@ def _found(
     shown = {**one, "furniture_objects": objects, "observed": Scene(camera=scene.camera, objects=(item,))}
     look = evaluate(stages, shown, ("appearance",), Runner(None))["appearance"]
     item = look.applied(shown["observed"]).objects[0]
-    return Found(item, _edge(scene, item, parent), detected, look.pictures, as_built)
+    return Found(item, _edge(scene, item, parent), look.pictures, as_built)
 
 
 def _edge(scene: Scene, item: SceneObject, parent: str) -> Support | None:

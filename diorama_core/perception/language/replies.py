@@ -194,8 +194,6 @@ class Ballot:
     """At most one per object, with the share of the replies that agree."""
     facing: tuple[tuple[str, str], ...]
     captions: tuple[tuple[str, str], ...]
-    rejected: int
-    """Relations that named unknown ids or an object as its own support."""
 
 
 def counted(replies: Sequence[GraphReply], objects: Mapping[int, str], architecture: Mapping[int, str]) -> Ballot:
@@ -208,13 +206,11 @@ def counted(replies: Sequence[GraphReply], objects: Mapping[int, str], architect
     """
     names = {**objects, **architecture}
     votes: dict[str, Counter[tuple[str, Relation]]] = {}
-    rejected = 0
     for reply in replies:
         seen: set[int] = set()
         for entry in reply.support_relation:
             known = entry.subject_id in objects and entry.target_id in names and entry.subject_id != entry.target_id
             if not known or entry.subject_id in seen:
-                rejected += 1
                 continue
             seen.add(entry.subject_id)
             choice: tuple[str, Relation] = (names[entry.target_id], entry.type)
@@ -223,7 +219,7 @@ def counted(replies: Sequence[GraphReply], objects: Mapping[int, str], architect
     for child, counts in votes.items():
         (parent, relation), agreeing = min(counts.items(), key=lambda item: (-item[1], item[0]))
         edges.append((Support(child, parent, relation), agreeing / len(replies)))
-    return Ballot(tuple(edges), _fronts(replies, objects), _captions(replies, objects), rejected)
+    return Ballot(tuple(edges), _fronts(replies, objects), _captions(replies, objects))
 
 
 def _fronts(replies: Sequence[GraphReply], objects: Mapping[int, str]) -> tuple[tuple[str, str], ...]:
