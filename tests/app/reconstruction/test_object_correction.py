@@ -13,7 +13,6 @@ from diorama_app.reconstruction.object_correction import (
     start_outline,
     use_outline,
 )
-from diorama_core.artefacts import DetectedObject
 from diorama_core.errors import EditRefused
 from diorama_core.pipeline import reconstruct_object as pipeline
 from diorama_core.pipeline.reconstruct_object import Found
@@ -54,9 +53,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[dict]:
             box_px=box.box,
             confidence=0.6,
         )
-        whole = np.zeros((480, 640), dtype=bool)
-        detected = DetectedObject(object_id, box.category, box.label, box.box, whole, 1, 1.0)
-        return Found(item, Support(object_id, "floor"), detected, {}, as_built=False)
+        return Found(item, Support(object_id, "floor"), {}, as_built=False)
 
     monkeypatch.setattr(pipeline, "reconstruct_object", look)
     return calls
