@@ -46,8 +46,6 @@ Trait = Literal[
     "screen",  # shows pictures, on a stand or on a wall
     "fixed_to_wall",  # never stands free
     "never_on_objects",  # never stands on other objects, but for rugs
-    "never_hangs",  # stands on the floor wherever it is
-    "sometimes_hangs",  # is set down on things, and now and then hung up
     "in_sets",  # those of one room are often of one shape, size and colour
     "solid",  # fills its cuboid
     "own_colours",  # its look is not one colour of one main material
