@@ -158,7 +158,7 @@ def slot_pixels(
         others = [of_slots[k] for k in of_slots if k != index and not _is_near(seeds[k] - seeds[index])]
         # A colour of the background is on other slots where one looks past them.
         before = covered < SETTINGS.behind and _is_before_all(like[index], mine, others)
-        if near[index].sum() >= SETTINGS.min_share * mine.sum() and not crossed and not behind and not before:
+        if not crossed and not behind and not before:
             pixels_of_slots.append(SlotPixels(slots[index], index, near[index], mine))
     return tuple(pixels_of_slots)
 

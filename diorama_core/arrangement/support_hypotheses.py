@@ -222,7 +222,7 @@ def _below(owners: np.ndarray, k: int) -> dict[int, float]:
     under = lowest[ends] + max(2, round(RIM_SHARE * height))
     inside = under < height
     seen = owners[under[inside], columns[ends][inside]]
-    below, counts = np.unique(seen[(seen >= 0) & (seen != k)], return_counts=True)
+    below, counts = np.unique(seen[seen >= 0], return_counts=True)
     return {int(other): float(count) / max(int(ends.sum()), 1) for other, count in zip(below, counts, strict=True)}
 
 

@@ -89,7 +89,7 @@ class ChainScorer:
         with np.errstate(divide="ignore", invalid="ignore"):
             distance = gap[:, None] / slope
         return np.where(
-            (slope < -self.settings.search.grazing) & (distance > 0) & (distance < self.settings.search.reach_m),
+            (slope < -self.settings.search.grazing) & (distance < self.settings.search.reach_m),
             distance,
             np.inf,
         )

@@ -63,9 +63,6 @@ class FeasibleRecipe:
     sizes_reasoned: bool = False
     """Whether sizes follow distances, because a photo alone gave both: an object that its support moves toward the
     camera then becomes smaller by as much."""
-    adherence_m: float = 0.0
-    """Faces parallel to a wall and nearer than this are set against it, besides those whose support edge says so. Above
-    0 a second run may change a layout: the first can bring objects near walls."""
     weights: Weights = AS_IT_IS
     """Factors on the costs in `weights.DEFAULT_COSTS`."""
     settings: LayoutSettings = LAYOUT
@@ -83,9 +80,7 @@ class FeasibleRecipe:
         """
         begun = time.perf_counter()
         progress.report(0.0, "reading the layout")
-        problem = build_problem(
-            scene, self.library, only=self.only, adherence_m=self.adherence_m, settings=self.settings
-        )
+        problem = build_problem(scene, self.library, only=self.only, adherence_m=0.0, settings=self.settings)
         before = measure(problem, problem.R, problem.p, problem.scale)
         watched = scene.camera is not None and self._across > 1.0
         seen_before = ObservedView.of(scene, self.library, self.settings) if watched else None

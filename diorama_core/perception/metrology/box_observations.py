@@ -126,7 +126,7 @@ def gather(
     trust = np.array([o.mask_confidence**2 for o in objects]).reshape(-1, 1)
     trust = trust * np.where(exact, 1.0, settings.observed.guessed_trust)[:, None]
     weight = np.column_stack([np.where(unseen[:, e].any(axis=1), 0.0, 1.0) for e in CORNER_EDGES]) * trust
-    reach = np.array([mask_reach(o, b, settings.observed) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
+    reach = np.array([mask_reach(o, b) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
     in_front, before = _bottom_lower(boxes, height, settings.observed), _before(objects, boxes, settings.observed)
     meanings = tuple(o.meanings for o in objects)
     return BoxObservations(

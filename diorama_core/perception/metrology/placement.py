@@ -380,9 +380,7 @@ def _floor_cost(observations: BoxObservations, index: int, settings: PlacementSe
         cost += settings.beside_its_supporter_cost
     if category.name in PORTABLE and any(_often_carries(observations, j, index) for j in parents):
         cost += settings.at_carrier_cost
-    before = max(
-        (float(observations.before[index, j]) for j in parents if not observations.in_front[j, index]), default=0.0
-    )
+    before = max((float(observations.before[index, j]) for j in parents), default=0.0)
     return cost + settings.before_cost * before
 
 

@@ -31,7 +31,6 @@ class BoxObservationSettings:
     """For masks that are not the user's own."""
     empty_sigma_solid: float = 0.13
     empty_sigma: float = 0.35
-    min_confidence: float = 0.5
     max_outline_cost: float = 10.0
     guessed_trust: float = 0.5
     """Trust in a mask that is not the user's own, at full agreement of its starts."""

@@ -22,12 +22,8 @@ _SOLID = having("solid")
 """Categories whose things fill their cuboids."""
 
 
-def mask_reach(
-    item: DetectedObject, box: Float[np.ndarray, "4"], settings: BoxObservationSettings = SETTINGS.observed
-) -> Float[np.ndarray, "4"]:
+def mask_reach(item: DetectedObject, box: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4"]:
     """How far the mask reaches along the diagonals, in half box sizes from the box's centre; NaN without a mask."""
-    if item.mask_confidence < settings.min_confidence or item.mask.ndim != 2:
-        return np.full(4, np.nan)
     rows, columns = np.nonzero(_outline_rows(item.mask))
     if len(rows) < 8:
         return np.full(4, np.nan)
