@@ -14,6 +14,7 @@ lowers the ceiling.
 from __future__ import annotations
 
 import ast
+import re
 import sys
 import tomllib
 from collections.abc import Iterator
@@ -79,18 +80,25 @@ def checked(root: Path) -> list[str]:
 
 def named_kinds(path: Path, kinds: frozenset[str]) -> list[str]:
     """The kinds that a module writes out, as often as it does."""
-    return [kind for node in ast.walk(ast.parse(path.read_text("utf-8"))) for kind in _kind(node, kinds)]
+    return [kind for node in ast.walk(_parsed(path, kinds)) for kind in _kind(node, kinds)]
 
 
 def tables(path: Path, kinds: frozenset[str]) -> list[int]:
     """Lines of a module's tables of kinds: the outermost literals, or calls that hold them, of several."""
     found: list[int] = []
-    for node in ast.parse(path.read_text("utf-8")).body:
+    for node in _parsed(path, kinds).body:
         value = getattr(node, "value", None)
         constant = isinstance(node, ast.Assign | ast.AnnAssign) and value is not None
         literals = [value] if constant else [n for n in ast.walk(node) if isinstance(n, ast.Set | ast.Tuple | ast.List)]
         found += [n.lineno for n in literals if len({k for x in ast.walk(n) for k in _kind(x, kinds)}) >= MIN_TABLE]
     return sorted(set(found))
+
+
+def _parsed(path: Path, kinds: frozenset[str]) -> ast.Module:
+    """A module; an empty one where no kind is quoted, as in most: parsing takes long."""
+    code = path.read_text("utf-8")
+    quoted = re.search(rf"[\"']({'|'.join(sorted(kinds))})[\"']", code)
+    return ast.parse(code if quoted else "")
 
 
 def _kind(node: ast.AST, kinds: frozenset[str]) -> Iterator[str]:

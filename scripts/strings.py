@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ast
 import io
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from pathlib import Path
@@ -47,6 +48,7 @@ WHERE: Mapping[str, tuple[int, ...]] = {
     "_status": (1, 3),
 }
 """Which arguments of a call are texts of the page where they are constant."""
+MARKED = re.compile(rf"\b(plural|{'|'.join(WHERE)})\(")
 Text = str | tuple[str, str]
 """A text, or its singular and plural."""
 HEADER = b"""# Texts of the page of Diorama; made by scripts/strings.py.
@@ -79,7 +81,7 @@ def _marked() -> Iterator[tuple[Text, str]]:
 
 def texts_in(code: str) -> Iterator[Text]:
     """The texts of a module of Python."""
-    tree = ast.parse(code)
+    tree = ast.parse(code if MARKED.search(code) else "")  # most have none, and parsing takes long
     named = {
         target.id: node.value
         for node in tree.body

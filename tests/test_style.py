@@ -12,6 +12,8 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 FOLDERS = ("diorama_core", "diorama_app", "addons", "scripts", "tests", "examples")
+DOCSTRING = re.compile(r'(?:\A(?:#.*\n)*|:(?:  #.*)?\n *)r?"""(.+)')
+"""The first line of a docstring: to parse all modules takes ten seconds."""
 ODD_STARTS = re.compile(r"(Of|And|Nor|But|Or|The same)\b")
 QUESTIONS = re.compile(r"(What|How|Where|When)\b")
 MAX_QUESTIONS = 0.12
@@ -57,8 +59,10 @@ def messages(path: Path) -> Iterator[tuple[str, str]]:
 
 
 def test_docstrings_begin_with_their_subject() -> None:
-    docstrings = [(where, text) for path in modules(*FOLDERS) for where, _, text in documented(path)]
-    assert [where for where, text in docstrings if ODD_STARTS.match(text)] == []
+    paths = modules(*FOLDERS)
+    docstrings = [(path, text) for path in paths for text in DOCSTRING.findall(path.read_text("utf-8"))]
+    assert len(docstrings) > 2 * len(paths)
+    assert [(path, text) for path, text in docstrings if ODD_STARTS.match(text)] == []
     questions = sum(QUESTIONS.match(text) is not None for _, text in docstrings)
     assert questions <= MAX_QUESTIONS * len(docstrings), f"{questions} of {len(docstrings)} begin with a question word"
 

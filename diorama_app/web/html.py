@@ -112,10 +112,8 @@ class LiveHtml:
         """Number of the last action of the page that was told."""
         self._frame = '<div class="dio">%s</div>'
         if on_action is not None:
-            field = gui.add_text("·", "")
-            uuid = component_uuid(field)
-            gui.add_html(f'<style>div:has(> .mantine-Flex-root label[for="{uuid}"]){{display:none}}</style>')
-            send = _SEND % uuid
+            field = gui.add_text("·", "", visible=False)  # the page sends its value without drawing it
+            send = _SEND % component_uuid(field)
             handlers = {
                 "click": _CLICK,
                 "change": _CHANGE,

@@ -110,7 +110,7 @@ class Page(viser.GuiApi):
         found = []
         for k, (kind, label, handle) in enumerate(self.made):
             if kind == "text" and label == "·":
-                shown = self.made[k + 2][2]
+                shown = self.made[k + 1][2]
                 found.append((handle, shown.content if shown.visible else ""))
         return found
 

@@ -16,10 +16,12 @@ from diorama_app.app import Editor
 from diorama_app.projects.example import EXAMPLE
 from diorama_app.serve import Running, start
 from diorama_core.geometry.planes import plane_rectangle
+from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
 from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import QUERY, EditorPage
 from tests.e2e.conftest import FAILED, keep_picture
+from tests.few_shapes import example_scene, few_shapes
 from tests.ports import free, lasting_port
 from tests.waiting import until
 
@@ -27,8 +29,19 @@ pytestmark = pytest.mark.browser
 
 
 @pytest.fixture
-def newcomer(context, serve: Callable[..., Running], request: pytest.FixtureRequest) -> Iterator[EditorPage]:
-    page = EditorPage.open(context, serve(), newcomer=True)
+def library() -> str:
+    return "built-in"
+
+
+@pytest.fixture
+def newcomer(
+    context: BrowserContext,
+    serve: Callable[..., Running],
+    library: str | Callable[[], ShapeLibrary],
+    request: pytest.FixtureRequest,
+) -> Iterator[EditorPage]:
+    running = serve(library=library if isinstance(library, str) else library())
+    page = EditorPage.open(context, running, newcomer=True)
     yield page
     keep_picture(page, request.node.name, failed=request.node.stash[FAILED])
     page.page.close()
@@ -80,6 +93,7 @@ def test_what_is_no_picture_is_said_and_the_start_page_stays(newcomer: EditorPag
     expect(page.locator("#dio-tour")).to_have_count(0)
 
 
+@pytest.mark.parametrize("library", [lambda: few_shapes(example_scene())], ids=["few shapes"])
 def test_an_uploaded_photo_is_built_without_a_click_unless_one_marks_it(newcomer: EditorPage) -> None:
     page = newcomer.page
     with page.expect_file_chooser() as chosen:
