@@ -9,9 +9,10 @@ from jaxtyping import Float
 
 from diorama_core.arrangement.surfaces import plane_surface
 from diorama_core.editing.placing import Hit, SupportTarget, insertion
-from diorama_core.editing.plan_edits import WallFoot, wall_feet
+from diorama_core.editing.plan_edits import wall_feet
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import DOOR, OPENING_CATEGORIES, wall_of
+from diorama_core.geometry.wall_lines import DrawnWall
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.types import Plane, Scene, SceneObject
@@ -74,7 +75,7 @@ def _is_before(item: SceneObject, wall: Plane, low_m: float, high_m: float) -> b
     return near and float(corners[:, 2].min()) < high_m and float(corners[:, 2].max()) > low_m
 
 
-def _free_spot(wanted: float, half: float, foot: WallFoot, taken: Iterable[SceneObject]) -> float | None:
+def _free_spot(wanted: float, half: float, foot: DrawnWall, taken: Iterable[SceneObject]) -> float | None:
     """The place along a wall, nearest to the wanted one, where nothing else is within half a width; None: nowhere."""
     sides = [np.sort((o.corners_world[:, :2] - foot.start) @ foot.along)[[0, -1]] for o in taken]
     spots = [min(max(wanted, half), foot.length_m - half), *(s for a, b in sides for s in (a - half, b + half))]

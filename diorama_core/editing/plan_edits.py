@@ -17,7 +17,8 @@ import shapely
 from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
-from diorama_core.geometry.planes import clip_polygon, plane_rectangle
+from diorama_core.geometry.planes import clip_polygon
+from diorama_core.geometry.wall_lines import DrawnWall, bare_wall
 from diorama_core.scene.edits import fresh_id
 from diorama_core.scene.room_edits import ceiling_height, floor_height, move_plane
 from diorama_core.scene.types import Architecture, Plane, PlaneRole, Scene, SceneObject, Support, SurfaceFinish
@@ -32,27 +33,6 @@ Point = Float[np.ndarray, "2"]
 
 
 @dataclass(frozen=True)
-class WallFoot:
-    """A wall's face on the floor, from left to right seen from inside the room (metres, world x and y)."""
-
-    id: str
-    start: Point
-    end: Point
-    outward: Point
-    """Unit, out of the room."""
-
-    @property
-    def length_m(self) -> float:
-        """Between its ends."""
-        return float(np.linalg.norm(self.end - self.start))
-
-    @property
-    def along(self) -> Point:
-        """Unit, from start to end."""
-        return (self.end - self.start) / max(self.length_m, 1e-9)
-
-
-@dataclass(frozen=True)
 class Corner:
     """Where two walls meet."""
 
@@ -63,9 +43,9 @@ class Corner:
     at: Point
 
 
-def wall_feet(scene: Scene) -> tuple[WallFoot, ...]:
-    """Every wall's foot."""
-    return tuple(_foot(p) for p in scene.architecture.by_role("wall"))
+def wall_feet(scene: Scene) -> tuple[DrawnWall, ...]:
+    """Every wall without its openings."""
+    return tuple(bare_wall(p) for p in scene.architecture.by_role("wall"))
 
 
 def corners(scene: Scene) -> tuple[Corner, ...]:
@@ -119,13 +99,6 @@ def set_wall_length(scene: Scene, wall_id: str, length_m: float) -> Scene:
         if abs(lever) > SQUARE:
             return move_plane(scene, end.id, (length_m - wall.length_m) * lever)
     raise EditRefused("no other wall stands at its ends; drag a wall instead")
-
-
-def _foot(wall: Plane) -> WallFoot:
-    origin, axes, extents = plane_rectangle(wall)
-    start = origin[:2]
-    flat = -wall.normal[:2]
-    return WallFoot(wall.id, start, start + axes[:2, 0] * extents[0], flat / max(float(np.linalg.norm(flat)), 1e-9))
 
 
 SHORTEST_SIDE_M, LONGEST_SIDE_M = 1.0, 30.0

@@ -43,6 +43,11 @@ class DrawnWall:
     openings: tuple[Opening, ...] = ()
 
     @property
+    def id(self) -> str:
+        """The plane's."""
+        return self.plane.id
+
+    @property
     def length_m(self) -> float:
         """Length of the face."""
         return float(np.linalg.norm(self.end - self.start))
@@ -70,7 +75,7 @@ def wall_lines(planes: Iterable[Plane], items: Sequence[SceneObject], scene: Sce
         items: Objects; doors and windows among them become openings of the wall they hang on or stand in.
         scene: Says what hangs on what.
     """
-    walls = [_bare(p) for p in planes if p.role == "wall"]
+    walls = [bare_wall(p) for p in planes if p.role == "wall"]
     fills = [o for o in items if o.category in OPENING_CATEGORIES]
     cut = walls_cut_by(fills, [w.plane for w in walls], scene)
 
@@ -83,7 +88,8 @@ def wall_lines(planes: Iterable[Plane], items: Sequence[SceneObject], scene: Sce
     return tuple(opened(w) for w in walls)
 
 
-def _bare(plane: Plane) -> DrawnWall:
+def bare_wall(plane: Plane) -> DrawnWall:
+    """A wall without its openings."""
     origin, axes, extents = plane_rectangle(plane)
     start = origin[:2]
     heights = plane.polygon[:, 2]

@@ -10,9 +10,10 @@ from jaxtyping import Float
 from diorama_core.appearance.patterns import COLOURS
 from diorama_core.appearance.surface_finish import KINDS, usual_finish
 from diorama_core.editing.opening_insertion import with_opening
-from diorama_core.editing.plan_edits import WallFoot, wall_feet
+from diorama_core.editing.plan_edits import wall_feet
 from diorama_core.editing.sunlight import first_daylight, set_light
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.wall_lines import DrawnWall
 from diorama_core.library.labels import with_article
 from diorama_core.library.language import tokens
 from diorama_core.library.record import ShapeLibrary
@@ -221,7 +222,7 @@ def direction_of(scene: Scene, side: str) -> Float[np.ndarray, "2"]:
     return np.asarray({"right": right, "left": -right, "back": away, "front": -away}[side])
 
 
-def _toward(scene: Scene, foot: WallFoot, side: str) -> float:
+def _toward(scene: Scene, foot: DrawnWall, side: str) -> float:
     """How far a wall is to a side."""
     return round(float(foot.outward @ direction_of(scene, side)), 1) if side else 0.0
 
@@ -237,7 +238,7 @@ def wall_on(scene: Scene, side: str) -> Plane:
     return scene.plane(foot.id)
 
 
-def _free_m(scene: Scene, foot: WallFoot) -> float:
+def _free_m(scene: Scene, foot: DrawnWall) -> float:
     """Length of a wall that no opening or picture takes."""
     standing = [o for o in scene.objects if (s := scene.support_of(o.id)) is not None and s.parent == foot.id]
     return foot.length_m - sum(float(o.size_m[1]) for o in standing)
