@@ -18,7 +18,7 @@ from diorama_core.models.store import ModelStore
 from diorama_core.pipeline.choices import StageStatus, profile_status
 
 SETS = {
-    N_("micro: everyday objects"): "micro",
+    N_("micro: everyday objects, rough depth"): "micro",
     N_("tiny: a photo alone"): "tiny",
     N_("lite: fine on a laptop"): "lite",
     N_("default: better"): "default",

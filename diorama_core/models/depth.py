@@ -38,6 +38,11 @@ class SeenDepth:
     depth_m: Float32[np.ndarray, "h w"]
     normals_camera: Float32[np.ndarray, "h w 3"]
     intrinsics: Intrinsics
+    log_sigma: Float32[np.ndarray, "h w"] | None = None
+    """Deviation of the depth's logarithm where it is rough, and evidence beside other evidence; None where it may stand
+    for measured depth."""
+    scale_log_sigma: float = 0.0
+    """Deviation of the logarithm of a rough depth's scale."""
 
 
 @runtime_checkable

@@ -7,18 +7,16 @@ Tan and Le, EfficientNet (ICML 2019), in the variant for small devices: no squee
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Mapping
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-import platformdirs
 from jaxtyping import Float
 
 from diorama_core.errors import UnavailableError
-from diorama_core.io.atomic import write_atomically
+from diorama_core.models.store import derived_graph
 
 FEATURES, CLASSES = 1280, 1000
 SIDE_PX = 224
@@ -46,14 +44,8 @@ def lite0_graph() -> Path:
         UnavailableError: when the package is missing or altered, or the cache folder cannot be written.
     """
     weights = _weights()
-    cache_dir = os.environ.get("DIORAMA_CACHE") or platformdirs.user_cache_dir("diorama")
-    path = Path(cache_dir) / "networks" / f"efficientnet-lite0-{_WEIGHTS_SHA256[:12]}-{_GRAPH_VERSION}.onnx"
-    if not path.is_file():
-        try:
-            write_atomically(path, _graph(_read(weights)))
-        except OSError as error:
-            raise UnavailableError(f"{path}: cannot be written ({error.strerror}); set DIORAMA_CACHE") from error
-    return path
+    name = f"efficientnet-lite0-{_WEIGHTS_SHA256[:12]}-{_GRAPH_VERSION}"
+    return derived_graph(name, lambda: _graph(_read(weights)))
 
 
 def _weights() -> Path:

@@ -14,7 +14,7 @@ import hashlib
 import json
 import os
 import shutil
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -328,6 +328,26 @@ def _record(path: Path, written_ns: int, size: int) -> Installed:
 def _digest(path: Path, written_ns: int, size: int) -> str:
     """The digest of a file as it was written then."""
     return sha256_of(path)
+
+
+def derived_graph(name: str, make: Callable[[], bytes]) -> Path:
+    """The ONNX graph of this name in the cache folder; made where it is not there.
+
+    Args:
+        name: changes with whatever the graph is made from, and how.
+        make: the graph's bytes.
+
+    Raises:
+        UnavailableError: when the cache folder cannot be written.
+    """
+    cache_dir = os.environ.get("DIORAMA_CACHE") or platformdirs.user_cache_dir("diorama")
+    path = Path(cache_dir) / "networks" / f"{name}.onnx"
+    if not path.is_file():
+        try:
+            write_atomically(path, make())
+        except OSError as error:
+            raise UnavailableError(f"{path}: cannot be written ({error.strerror}); set DIORAMA_CACHE") from error
+    return path
 
 
 def sha256_of(path: Path) -> str:

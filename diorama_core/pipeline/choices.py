@@ -36,6 +36,8 @@ DEPTH_NETWORKS = (
     "da3-metric-large",
     "metric3d-small",
 )
+ROUGH_DEPTH = ("fast-depth",)
+"""Depth that is evidence beside lines and sizes, where none of the others is here."""
 INPAINTERS = ("lama", "migan")
 """Best first."""
 FOREGROUNDS = (("birefnet", "birefnet-lite"), ("mvanet",))
@@ -78,7 +80,7 @@ class NetworkChoice:
         Raises:
             InputError: when the named one reads no depth.
         """
-        return _chosen(self.depth, DEPTH_NETWORKS, "depth network")
+        return _chosen(self.depth, (*DEPTH_NETWORKS, *ROUGH_DEPTH), "depth network")
 
 
 def _file(named: str | None) -> Path | None:
@@ -134,7 +136,7 @@ def profile_status(*, store: ModelStore | None = None) -> tuple[StageStatus, ...
     return (
         _status(store, "detection", DETECTORS, "boxes drawn by you, proposals to correct"),
         _status(store, "outlines", SEGMENTERS, "outlines by the network that comes along, and by colour"),
-        _status(store, "depth and camera", DEPTH_NETWORKS, "lines, known sizes and the floor"),
+        _status(store, "depth and camera", (*DEPTH_NETWORKS, *ROUGH_DEPTH), "lines, known sizes and the floor"),
         StageStatus(
             "support graph",
             f"language model {lmm.model} at {lmm.base_url}" if lmm else "geometry: contact, containment, usual places",

@@ -146,7 +146,8 @@ def _geometry(store: ModelStore, network: Network, known: Inputs, progress: Prog
         Measurement("share of pixels with depth", float(valid.mean()), (0.3, 1.0)),
         Measurement("median depth, metres", median_m, (0.8, 8.0)),
     ]
-    if known.intrinsics is not None and seen.intrinsics is not None and not network.id.startswith(("metric3d", "da3")):
+    tells_focal_length = not network.id.startswith(("metric3d", "da3", "fast-depth"))
+    if known.intrinsics is not None and seen.intrinsics is not None and tells_focal_length:
         ratio = seen.intrinsics.fx / known.intrinsics.fx
         measured.append(Measurement("focal length over the true one", ratio, (0.6, 1.6)))
     return tuple(measured)

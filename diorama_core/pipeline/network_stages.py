@@ -7,6 +7,7 @@ from dataclasses import replace
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.clip import DuoduoClip, OpenClip
 from diorama_core.models.depth import DepthAnything3, GeometryNetwork, Metric3d, Moge2
+from diorama_core.models.fast_depth import FastDepth
 from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.gigapose import GigaPoseScale
@@ -74,8 +75,10 @@ def inpainter(store: ModelStore, chosen: Network) -> Filler:
 
 
 def depth_network(store: ModelStore, chosen: Network) -> GeometryNetwork:
-    """Metric3D v2, Depth Anything 3 or MoGe-2."""
+    """Metric3D v2, Depth Anything 3, MoGe-2 or FastDepth."""
     graph, weights = store.path(chosen, chosen.files[0].path), store.identity(chosen)
+    if chosen.id == "fast-depth":
+        return FastDepth(graph, weights)
     if chosen.id.startswith("da3"):
         return DepthAnything3(graph, weights)
     return Metric3d(graph, weights) if chosen.id.startswith("metric3d") else Moge2(graph, weights)

@@ -20,6 +20,7 @@ from diorama_core.errors import UnavailableError
 from diorama_core.io.assets import has_own_recogniser
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.depth import GeometryNetwork
+from diorama_core.models.fast_depth import FastDepth
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.manifest import network
 from diorama_core.models.network import Network
@@ -54,6 +55,7 @@ from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
 from diorama_core.perception.measured import MeasuredGeometry
+from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.pipeline import network_stages
 from diorama_core.pipeline.choices import (
     DEPTH_NETWORKS,
@@ -142,7 +144,9 @@ def foundation_stages(
     filler = _best(store, INPAINTERS, network_stages.inpainter)
     stages = replace(stages, filler=filler)
     depth_prediction = _depth_network(store, choice) if inputs.depth_m is None else None
-    if depth_prediction is not None:
+    if isinstance(depth_prediction, FastDepth):
+        stages = replace(stages, geometry=SingleViewMetrology(depth=depth_prediction))
+    elif depth_prediction is not None:
         stages = replace(
             stages,
             depth_prediction=NetworkDepthPrediction(depth_prediction),

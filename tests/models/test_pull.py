@@ -232,7 +232,7 @@ def test_files_fetched_elsewhere_are_taken_up_when_their_content_is_right(
 ) -> None:
     with pytest.raises(InputError, match="no file there"):
         store.add_folder(tmp_path)
-    assert store.add_folder(shared / "models") == ("yolox-nano",)
+    assert store.add_folder(shared / "models") == ("yolox-nano", "fast-depth")
     assert store.has(network("yolox-nano"))
     bad = tmp_path / "bad"
     bad.mkdir()

@@ -10,7 +10,7 @@ import pytest
 from diorama_core.models.manifest import NETWORKS, network
 from diorama_core.models.store import ModelStore
 from diorama_core.pipeline import network_stages
-from diorama_core.pipeline.choices import DEPTH_NETWORKS, DETECTORS, SEGMENTERS, best_here, profile_status
+from diorama_core.pipeline.choices import DEPTH_NETWORKS, DETECTORS, ROUGH_DEPTH, SEGMENTERS, best_here, profile_status
 from tests.models.tiny_networks import install
 
 
@@ -31,7 +31,11 @@ def _offer(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
 
 
 def test_every_choice_is_a_network_of_its_role() -> None:
-    for role, ids in {"detection": DETECTORS, "segmentation": SEGMENTERS, "geometry": DEPTH_NETWORKS}.items():
+    for role, ids in {
+        "detection": DETECTORS,
+        "segmentation": SEGMENTERS,
+        "geometry": (*DEPTH_NETWORKS, *ROUGH_DEPTH),
+    }.items():
         assert {n.id for n in NETWORKS if n.role == role} == set(ids)
 
 

@@ -29,15 +29,16 @@ def test_a_measurement_is_within_its_range(value: float, ok: bool) -> None:
     assert "(expected at least 1)" in str(Measurement("objects", value, (1, np.inf)))
 
 
-def test_the_real_detector_passes(shared: Path, tmp_path: Path) -> None:
+def test_the_real_networks_pass(shared: Path, tmp_path: Path) -> None:
     store = ModelStore(tmp_path)
     store.add_folder(shared / "models")
-    (check,) = check_networks(store, example_inputs().inputs)
-    assert check.ok, check.words
-    assert check.network.id == "yolox-nano"
-    assert check.words.startswith("boxes ")
-    assert "known objects found" in check.words
-    assert check.device == "cpu"
+    detector, depth = check_networks(store, example_inputs().inputs)
+    assert (detector.network.id, depth.network.id) == ("yolox-nano", "fast-depth")
+    assert detector.ok, detector.words
+    assert "known objects found" in detector.words
+    assert detector.device == "cpu"
+    assert depth.ok, depth.words
+    assert "median depth" in depth.words
 
 
 def test_the_large_detector_is_given_the_side_that_its_patches_need(tmp_path: Path) -> None:

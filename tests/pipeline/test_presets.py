@@ -13,10 +13,12 @@ from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import InputError, UnavailableError
 from diorama_core.io import assets
+from diorama_core.models.fast_depth import FastDepth
 from diorama_core.models.manifest import network
 from diorama_core.models.store import ModelStore
 from diorama_core.perception.foundation.proposals import OwnDetection
 from diorama_core.perception.language.client import LmmSettings
+from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.pipeline.choices import NetworkChoice, profile_status
 from diorama_core.pipeline.findings import camera_sentence
 from diorama_core.pipeline.presets import propose_boxes, stages_for
@@ -274,3 +276,20 @@ def test_progress_reaches_the_proposals(photo: Photo, store: ModelStore, graphs:
     assert boxes is not None
     assert [b.category for b in boxes] == ["chair"]
     assert heard == sorted(heard)
+
+
+def test_rough_depth_is_evidence_and_not_what_the_foundation_profile_needs(
+    photo: Photo, shared: Path, store: ModelStore
+) -> None:
+    store.add_folder(shared / "models")
+    given = Inputs(photo, (LabelledBox(BOX, "chair", "chair"),))
+    stages = stages_for("auto", given, box_library(), store=store)
+    assert isinstance(stages.geometry, SingleViewMetrology)
+    assert isinstance(stages.geometry.depth, FastDepth)
+    assert stages.depth_prediction is None
+    named = stages_for("auto", given, box_library(), store=store, choice=NetworkChoice(depth="fast-depth"))
+    assert named.geometry == stages.geometry
+    measured = replace(given, depth_m=np.ones((photo.height, photo.width), np.float32))
+    assert not isinstance(stages_for("auto", measured, box_library(), store=store).geometry, SingleViewMetrology)
+    with pytest.raises(UnavailableError, match="the foundation profile needs"):
+        stages_for("foundation", given, box_library(), store=store)

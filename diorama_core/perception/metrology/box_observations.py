@@ -11,6 +11,7 @@ from jaxtyping import Bool, Float
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.taxonomy import Category, category
 from diorama_core.perception.metrology.priors import SizeMode, size_modes
+from diorama_core.perception.metrology.problem import UNTOLD
 from diorama_core.perception.metrology.settings import SETTINGS, BoxObservationSettings, MetrologySettings
 from diorama_core.perception.metrology.silhouette import CORNER_EDGES, mask_reach
 
@@ -24,6 +25,21 @@ def _bottom_lower(
 ) -> Bool[np.ndarray, "n n"]:
     """Whether j's box ends clearly lower than i's: on the same floor, j is in front."""
     return boxes[None, :, 3] > boxes[:, None, 3] + settings.clearly_lower * height
+
+
+@dataclass(frozen=True, eq=False)
+class SeenDepths:
+    """Depths at which a network sees the objects. Its errors of scale are common to the whole picture, so they are in
+    heights of the camera above the floor that it sees."""
+
+    log_height: float
+    """Logarithm of that height (m)."""
+    height_sigma: float
+    """Deviation of this logarithm."""
+    log_depth: Float[np.ndarray, "n"]
+    """Logarithms of the objects' depths over that height."""
+    log_sigma: Float[np.ndarray, "n"]
+    """Deviations of these."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +70,8 @@ class BoxObservations:
     meanings: tuple[tuple[tuple[str, float], ...], ...]
     """`DetectedObject.meanings` of every object."""
     settings: MetrologySettings
+    depths: SeenDepths | None = None
+    """What a depth network sees; None without one."""
 
     def __len__(self) -> int:
         return len(self.categories)
@@ -61,6 +79,12 @@ class BoxObservations:
     def size_modes(self, index: int) -> tuple[SizeMode, ...]:
         """The sizes that an object may have, of its category and of what else its word may mean."""
         return size_modes(self.categories[index].name, self.meanings[index], self.settings.placement)
+
+    def seen_depth(self, index: int, camera_height_m: float) -> tuple[float, float]:
+        """Logarithm of the depth (m) at which an object is seen, for a height of the camera, and its deviation."""
+        if self.depths is None:
+            return 0.0, UNTOLD
+        return float(self.depths.log_depth[index] + np.log(camera_height_m)), float(self.depths.log_sigma[index])
 
     def hidden(self, index: int, parent: int | None = None) -> Bool[np.ndarray, "4"]:
         """Edges of an object that others hide."""

@@ -74,6 +74,10 @@ def scan_heights_together(
     log_heights = np.log(HEIGHTS_M)
     off = (log_heights - np.log(settings.heights.height_prior_m)) / settings.heights.height_log_sigma
     total = (settings.heights.height_tails + 1) * np.log1p(off**2 / settings.heights.height_tails)
+    for observations, _, _ in pictures:
+        if observations.depths is not None:
+            off = (log_heights - observations.depths.log_height) / observations.depths.height_sigma
+            total = total + off**2
     for voters, (observations, view, _) in zip(telling if any(telling) else standing, pictures, strict=True):
         if voters:
             rows = stacked([p for i in voters for p in _scan_rows(observations, i, settings.fit)])

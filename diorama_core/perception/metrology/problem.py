@@ -25,8 +25,8 @@ from diorama_core.perception.metrology.settings import SETTINGS, CuboidFitSettin
 from diorama_core.scene.types import Intrinsics
 
 UNKNOWNS = 6
-EDGES, CUT, SIZES, BASE, TOP, FOOTPRINT, WALL, FAR = (
-    slice(0, 4), slice(4, 6), slice(6, 9), 9, 10, slice(11, 13), 13, 14,
+EDGES, CUT, SIZES, BASE, TOP, FOOTPRINT, WALL, FAR, DEPTH = (
+    slice(0, 4), slice(4, 6), slice(6, 9), 9, 10, slice(11, 13), 13, 14, 15,
 )  # fmt: skip
 """Columns of `Values.residuals`."""
 UNTOLD = 1e6
@@ -83,6 +83,10 @@ class Problems:
     """Deviation of the logarithm of that coordinate's ratio."""
     cut_sigma: Float[np.ndarray, "n"]
     """How readily the cuboid may reach beyond the picture (of a logarithm of box sizes)."""
+    log_depth: Float[np.ndarray, "n"]
+    """Logarithm of the depth (m) at which a network sees the object."""
+    depth_sigma: Float[np.ndarray, "n"]
+    """Deviation of that logarithm."""
     outline: Float[np.ndarray, "n p 3"]
     """Points in a unit box that bound what the object fills of its cuboid (`library.kinds`): 40 points, or none."""
     extra: Float[np.ndarray, "n"]
@@ -203,6 +207,7 @@ def values(
             _outside_footprint(boxes, problems, settings),
             _off_wall(boxes, problems, settings),
             _too_far(boxes, settings),
+            _off_depth(boxes, corners, problems, view, settings),
         ],
         axis=1,
     )
@@ -275,14 +280,16 @@ def edge_residuals(
     inward = np.array([1.0, 1.0, -1.0, -1.0])
     bounds = bounds + np.where(border, 0.0, unfilled) * inward
     outward = (bounds - problems.box_px) * -inward
-    off = outward / problems.edge_sigma_px
-    robust = np.where(
-        np.abs(off) > settings.robust_beyond,
-        np.sign(off) * np.sqrt(np.maximum(2 * settings.robust_beyond * np.abs(off) - settings.robust_beyond**2, 0.0)),
-        off,
-    )
-    robust = np.where(off > 0, _gone_on(robust, outward, problems, settings), robust)
+    robust = _robust(outward / problems.edge_sigma_px, settings)
+    robust = np.where(outward > 0, _gone_on(robust, outward, problems, settings), robust)
     return robust + np.where(visible, 0.0, settings.invisible_penalty)[:, None]
+
+
+def _robust(off: Float[np.ndarray, "*n"], settings: CuboidFitSettings) -> Float[np.ndarray, "*n"]:
+    """Residuals whose squares grow linearly beyond some sigmas (Huber)."""
+    beyond = settings.robust_beyond
+    linear = np.sign(off) * np.sqrt(np.maximum(2 * beyond * np.abs(off) - beyond**2, 0.0))
+    return np.where(np.abs(off) > beyond, linear, off)
 
 
 def _gone_on(
@@ -321,6 +328,31 @@ def _too_far(boxes: Cuboids, settings: CuboidFitSettings) -> Float[np.ndarray, "
     """Rooms rarely reach farther than `FAR_M`."""
     away = np.linalg.norm(boxes.centre[:, :2], axis=1)
     return (np.maximum(np.log(np.maximum(away, 1e-6) / settings.far_m), 0.0) / settings.far_log_sigma)[:, None]
+
+
+def seen_surface(
+    boxes: Cuboids, corners: Float[np.ndarray, "n 8 3"], view: View, settings: CuboidFitSettings
+) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n 2"]]:
+    """Depth of what is seen of the cuboids, before their centres by a share of their depth and width; these shares.
+
+    Args:
+        boxes: of n rows.
+        corners: theirs, in the camera frame (m).
+        view: intrinsics, and rotation from camera to world.
+        settings: of the fit.
+    """
+    turn = boxes.yaw_rad - np.arctan2(view.heading[1], view.heading[0])
+    shares = settings.seen_before_centre * np.abs(np.stack([np.cos(turn), np.sin(turn)], axis=-1))
+    depth = corners[..., 2].mean(axis=1) - (shares * boxes.size_m[:, :2]).sum(axis=1)
+    return depth, shares
+
+
+def _off_depth(
+    boxes: Cuboids, corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View, settings: CuboidFitSettings
+) -> Float[np.ndarray, "n 1"]:
+    """How far the cuboid's seen surface is from where a network sees it."""
+    depth = np.maximum(seen_surface(boxes, corners, view, settings)[0], settings.cut_near_m)
+    return _robust((np.log(depth) - problems.log_depth) / problems.depth_sigma, settings)[:, None]
 
 
 def _off_wall(boxes: Cuboids, problems: Problems, settings: CuboidFitSettings) -> Float[np.ndarray, "n 1"]:

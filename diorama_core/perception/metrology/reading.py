@@ -82,6 +82,7 @@ TERMS: Mapping[str, tuple[slice, str, str]] = {
     "top": (slice(10, 11), "its top is as high as usual", "its top is as high as usual"),
     "on it": (slice(11, 13), "there it is on what holds it", "it fits on what holds it"),
     "wall": (slice(13, 14), "there its back is at the wall", "its back is at the wall"),
+    "depth": (slice(15, 16), "a depth network sees it there", "a depth network sees it there"),
 }
 """By term its residuals (`problem.values`), and why it holds the place and the size."""
 

@@ -33,6 +33,7 @@ def row(
         parent: The object it rests on, if any.
         more: Columns of `Problems` that differ from a thing on the floor, without the row axis.
     """
+    log_depth, depth_sigma = observations.seen_depth(index, camera_height_m)
     columns: dict[str, object] = {
         "item": float(index),
         "camera_height_m": camera_height_m,
@@ -53,6 +54,8 @@ def row(
         "wall_m": 1.0,
         "wall_sigma": UNTOLD,
         "cut_sigma": settings.cut_log_sigma,
+        "log_depth": log_depth,
+        "depth_sigma": depth_sigma,
         "outline": mode.outline,
         "extra": mode.cost,
     }

@@ -70,6 +70,8 @@ class CuboidFitSettings:
     """Tops nearer to the camera's height do not tell how far they are."""
     maybe_hidden: float = 0.3
     """Odds from which on a lower end may be hidden."""
+    seen_before_centre: float = 0.25
+    """What is seen of a cuboid is so far before its centre, in depths and widths: half of what its front is."""
     nearest_m: float = 0.4
     farthest_m: float = 12.0
 

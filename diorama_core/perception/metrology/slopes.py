@@ -11,6 +11,7 @@ from diorama_core.geometry.extreme_points import extreme_points
 from diorama_core.perception.metrology.problem import (
     BASE,
     CUT,
+    DEPTH,
     EDGES,
     FAR,
     FOOTPRINT,
@@ -25,6 +26,7 @@ from diorama_core.perception.metrology.problem import (
     corners_camera,
     cuboids,
     edge_residuals,
+    seen_surface,
     values,
     wall_sigmas,
 )
@@ -67,6 +69,7 @@ def jacobian(
     slopes[:, FOOTPRINT, :4] = _outside_footprint(boxes, plan, here.residuals[:, FOOTPRINT], problems, settings)
     slopes[:, WALL, :3] = _off_wall(boxes, plan, here.residuals[:, WALL], problems, settings)
     slopes[:, FAR, :2] = _too_far(boxes, plan, here.residuals[:, FAR], settings)
+    slopes[:, DEPTH] = _off_depth(boxes, corners, frame, here.residuals[:, DEPTH], problems, view, settings)
     rest = np.flatnonzero(~is_informative)
     if len(rest):
         slopes[rest] = _by_differences(problems.rows(rest), unknowns[rest], here.rows(rest), view, settings)
@@ -219,6 +222,24 @@ def _too_far(
     centre = boxes.centre[:, :2]
     outward = (centre[:, :, None] * plan).sum(axis=1)
     return outward * ((here > 0.0) / ((centre**2).sum(axis=1) * settings.far_log_sigma))[:, None]
+
+
+def _off_depth(
+    boxes: Cuboids,
+    corners: Float[np.ndarray, "n 8 3"],
+    frame: _Frame,
+    here: Float[np.ndarray, "n"],
+    problems: Problems,
+    view: View,
+    settings: CuboidFitSettings,
+) -> Float[np.ndarray, "n 6"]:
+    """Slopes of the seen surface's depth; beyond `robust_beyond` sigmas they fall as the residual grows."""
+    depth, shares = seen_surface(boxes, corners, view, settings)
+    slopes = frame.moved(np.zeros((3, 1, len(depth))))[:, 2, 0].T.copy()
+    slopes[:, 2:4] -= shares * boxes.size_m[:, :2]
+    slopes *= np.minimum(1.0, settings.robust_beyond / np.maximum(np.abs(here), 1e-9))[:, None]
+    near = depth <= settings.cut_near_m
+    return np.where(near[:, None], 0.0, slopes / (np.where(near, 1.0, depth) * problems.depth_sigma)[:, None])
 
 
 def _by_differences(

@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Cuboid, DetectedObject, Inputs, ObjectGeometry
+from diorama_core.artefacts import (
+    CameraEstimate,
+    CameraHypothesis,
+    Cuboid,
+    DetectedObject,
+    Inputs,
+    ObjectGeometry,
+    Photo,
+)
+from diorama_core.models.depth import GeometryNetwork
 from diorama_core.perception.metrology.box_observations import BoxObservations, gather
 from diorama_core.perception.metrology.floor import HeightScan, scan_heights
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement, place_all
 from diorama_core.perception.metrology.problem import View
 from diorama_core.perception.metrology.reading import confidence_of, foot_seen, heading_and_size, reasons_of
+from diorama_core.perception.metrology.rough_depth import seen_depths
 from diorama_core.perception.metrology.settings import SETTINGS, HeightScanSettings, MetrologySettings
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
@@ -28,6 +38,8 @@ class SingleViewMetrology:
     max_hypotheses: int = 3
     """Readings of the camera among which the objects decide."""
     settings: MetrologySettings = SETTINGS
+    depth: GeometryNetwork | None = None
+    """A network whose rough depth is evidence beside boxes and sizes."""
 
     def measure(
         self, inputs: Inputs, camera: CameraEstimate, objects: tuple[DetectedObject, ...], progress: Progress
@@ -42,7 +54,7 @@ class SingleViewMetrology:
         """
         observations = gather(objects, inputs.photo.width, inputs.photo.height, self.settings)
         progress.report(0.0, "Measuring the camera's height")
-        hypothesis, scan = self._choose(camera.hypotheses, observations, progress)
+        hypothesis, scan, observations = self._choose(camera.hypotheses, observations, inputs.photo, objects, progress)
         view = View(hypothesis.intrinsics, hypothesis.R_world_camera)
         progress.report(0.6, "Placing objects")
         placements = place_all(observations, view, scan.height_m, self.settings)
@@ -61,16 +73,24 @@ class SingleViewMetrology:
         )
 
     def _choose(
-        self, hypotheses: tuple[CameraHypothesis, ...], observations: BoxObservations, progress: Progress
-    ) -> tuple[CameraHypothesis, HeightScan]:
-        """The hypothesis under which vanishing points and objects are explained best."""
+        self,
+        hypotheses: tuple[CameraHypothesis, ...],
+        observations: BoxObservations,
+        photo: Photo,
+        objects: tuple[DetectedObject, ...],
+        progress: Progress,
+    ) -> tuple[CameraHypothesis, HeightScan, BoxObservations]:
+        """The hypothesis under which vanishing points and objects are explained best, with the depths seen by it."""
         scanned = []
         tried = hypotheses[: self.max_hypotheses]
         for done, hypothesis in enumerate(tried):
             progress.report(0.6 * done / len(tried), "Measuring the camera's height")
             view = View(hypothesis.intrinsics, hypothesis.R_world_camera)
-            scanned.append((hypothesis, scan_heights(observations, view, self.settings)))
-        return max(scanned, key=lambda pair: pair[0].score - self.settings.heights.cost_weight * pair[1].cost)
+            if self.depth is not None:
+                seen = self.depth.predict(photo.rgb, hypothesis.intrinsics)
+                observations = replace(observations, depths=seen_depths(seen, objects, view))
+            scanned.append((hypothesis, scan_heights(observations, view, self.settings), observations))
+        return max(scanned, key=lambda tried: tried[0].score - self.settings.heights.cost_weight * tried[1].cost)
 
 
 def _camera(hypothesis: CameraHypothesis, height_m: float) -> Camera:

@@ -25,8 +25,10 @@ def test_slopes_are_those_of_the_residuals(aside, ahead, grown, raised, yaw, bas
     row = problem(yaw=yaw).changed(
         base_sigma_m=base_sigma, top_m=0.9, top_sigma_m=0.1, footprint=[0.2, 3.1, 0.3, 0.5, 0.4], footprint_sigma_m=0.1,
         wall_m=2.0, wall_sigma=0.3, cut_sigma=0.2, hidden_px=[30.0, 0.0, 40.0, 5.0], hidden_odds=[0.5, 0.0, 0.2, 1.0],
+        log_depth=1.0, depth_sigma=0.15,
     )  # fmt: skip
-    at = unknowns(CENTRE * [1, ahead, 1] + [aside, 0, 0], SIZE * np.exp(grown))
+    # Aside of the middle: with two corners exactly behind one another, both kinks meet in one slope.
+    at = unknowns(CENTRE * [1, ahead, 1] + [aside + 0.013, 0, 0], SIZE * np.exp(grown))
     at[0, 5] = raised
     here = values(at, row, VIEW)
     found = jacobian(row.without_outlines(), at, here, VIEW)[0]
