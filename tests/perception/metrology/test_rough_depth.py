@@ -70,7 +70,7 @@ def test_depth_tells_the_scale_of_a_room_in_which_everything_is_large() -> None:
 
 
 def test_depth_tells_how_far_away_an_object_is_that_is_larger_than_its_kind() -> None:
-    """Of a large chair the upper half alone is marked: it looks like a near one of usual size."""
+    """A large chair of which the upper half alone is marked looks like a near one of usual size."""
     large = RequestedObject("chair", (-1.3, 4.6, 0.65), (0.85, 0.8, 1.3), 0.0)
     room = (ROOM[0], large, *ROOM[2:])
     depth, objects = shot(room, HEIGHT_M)
