@@ -1,6 +1,6 @@
 """One upright cuboid for the boxes of an object in several photos with known cameras.
 
-What speaks against a cuboid is what `perception.metrology` says photo by photo (`problem.residuals`): how far its
+What speaks against a cuboid is what `perception.metrology` says photo by photo (`problem.values`): how far its
 outline is from the box at each edge, leniently where something hides the edge. Its size is judged once. Unlike in one
 photo, distance is not read from the size: rays from several places meet.
 
@@ -22,7 +22,7 @@ from diorama_core.library.taxonomy import Category
 from diorama_core.multiview.settings import SETTINGS
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode, size_modes
-from diorama_core.perception.metrology.problem import UNTOLD, Problems, View, residuals, stacked
+from diorama_core.perception.metrology.problem import UNTOLD, Problems, View, stacked, values
 from diorama_core.perception.metrology.rows import row
 from diorama_core.scene.types import Camera
 
@@ -173,7 +173,7 @@ class _Joint:
         parts = []
         for camera, view, problems in self._views:
             rows = problems.rows(chosen).changed(yaw_rad=unknowns[:, 6])
-            edges = residuals(_as_seen(unknowns, camera, view), rows, view)[:, :4]
+            edges = values(_as_seen(unknowns, camera, view), rows, view).residuals[:, :4]
             behind = (rows.hidden_px > 0) & (edges > 0)
             parts.append(np.where(behind, _bounded(edges, SETTINGS.max_hidden), edges))
         size = np.einsum("nij,nj->ni", self._whitening[chosen], unknowns[:, 2:5] - self._log_size[chosen])
