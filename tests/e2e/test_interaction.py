@@ -321,6 +321,7 @@ def test_two_people_share_the_history_and_see_each_others_selection(editor: Edit
     expect(other.row("lamp")).to_have_count(1)
 
 
+@pytest.mark.slow
 def test_what_was_missed_is_added_from_the_photo_and_renamed(editor: EditorPage) -> None:
     session = editor.running.session
     editor.tab("Photo")

@@ -36,7 +36,7 @@ def posed(joint: Joint, share: float) -> np.ndarray:
     return trimesh.transformations.rotation_matrix(angle, joint.axis, joint.origin)
 
 
-def body(solids: tuple[Solid, ...]) -> manifold3d.Manifold:
+def closed(solids: tuple[Solid, ...]) -> list[manifold3d.Manifold]:
     found = []
     for solid in solids:
         mesh = trimesh.Trimesh(solid.vertices, solid.faces, process=False)
@@ -47,7 +47,7 @@ def body(solids: tuple[Solid, ...]) -> manifold3d.Manifold:
         if made.status() == manifold3d.Error.NoError and not made.is_empty():
             found.append(made)
     assert len(found) >= 0.8 * len(solids), "too few of the solids are closed to tell"
-    return manifold3d.Manifold.batch_boolean(found, manifold3d.OpType.Add)
+    return found
 
 
 @pytest.mark.parametrize("category", FAMILIES)
@@ -69,14 +69,16 @@ def shared_m3(others: list[manifold3d.Manifold], moving: manifold3d.Manifold) ->
 
 
 def opens_without_collision(shape_id: str, pieces: Articulation) -> None:
-    groups = {k: body(pieces.of_joint(k)) for k in (None, *range(len(pieces.joints)))}
+    groups = {k: closed(pieces.of_joint(k)) for k in (None, *range(len(pieces.joints)))}
     for number, joint in enumerate(pieces.joints):
-        others, moving = [made for k, made in groups.items() if k != number], groups[number]
-        touching = shared_m3(others, moving)
+        others = [made for k, group in groups.items() if k != number for made in group]
+        moving = manifold3d.Manifold.batch_boolean(groups[number], manifold3d.OpType.Add)
         for share in STEPS:
             shared = shared_m3(others, moving.transform(posed(joint, share)[:3]))
-            said = f"{shape_id}: {joint.name} at {share:.0%}: {1e6 * (shared - touching):.0f} cm3"
-            assert shared <= touching + TOUCH_M3, said
+            if shared > TOUCH_M3:  # most share nothing: then what they share at rest is not asked
+                touching = shared_m3(others, moving)
+                said = f"{shape_id}: {joint.name} at {share:.0%}: {1e6 * (shared - touching):.0f} cm3"
+                assert shared <= touching + TOUCH_M3, said
 
 
 @pytest.mark.parametrize("category", ["door", "office chair"])
