@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.editing.homes import joined
-from diorama_core.editing.reach import TURNING_M, uses_of
+from diorama_core.editing.reach import uses_of
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
 from tests.app.small_room import furnished_scene
@@ -49,7 +49,6 @@ def test_furniture_narrows_ways_and_takes_the_turning_circle() -> None:
             item = block(f"b{number}-{y:.1f}", (0.3, 0.3, 1.0), float(x), float(y))
             full = edits.insert(full, item, Support(item.id, "floor"))
     assert uses_of(full)[0].turning_at is None
-    assert TURNING_M == 1.5
 
 
 def test_rooms_of_a_home_are_told_apart() -> None:

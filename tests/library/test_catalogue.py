@@ -88,6 +88,7 @@ def test_geometry_is_canonical(library: BuiltInLibrary, shape_id: str) -> None:
 def test_builders_fill_the_size_they_are_given(design: Design) -> None:
     """The last stretch to the exact size stays small, so that nothing is visibly squashed."""
     points = np.concatenate([p.solid.vertices for p in design.build(design.size_m)])
+    assert np.isfinite(points).all()
     stretch = np.asarray(design.size_m) / np.ptp(points, axis=0)
     assert (stretch > 0.6).all()
     assert (stretch < 1.7).all()

@@ -11,8 +11,7 @@ from diorama_app.projects.formats import EXPORT_FORMATS, GUIDES
 from diorama_app.reconstruction.written_files import download_suffix
 from diorama_core.export import export_scene
 from diorama_core.export.gathering import ExportOptions
-from diorama_core.progress import Progress
-from tests.export.scenes import gathered, scene_of
+from tests.export.scenes import scene_of
 
 DOCS = Path(__file__).resolve().parents[3] / "docs" / "export.md"
 
@@ -24,11 +23,6 @@ def test_every_format_has_a_guide_and_every_guide_a_format() -> None:
 def test_every_format_is_in_the_documentation() -> None:
     text = DOCS.read_text()
     assert [name for name in EXPORT_FORMATS if not re.search(rf"^\|.*`{name}`", text, re.MULTILINE)] == []
-
-
-def test_the_viewer_is_written_by_its_place_in_the_table(tmp_path: Path) -> None:
-    EXPORT_FORMATS["html"].writer()(gathered("primitives"), tmp_path / "room.html", Progress())
-    assert (tmp_path / "room.html").read_text().startswith("<!")
 
 
 SELECTED = frozenset({"t"})

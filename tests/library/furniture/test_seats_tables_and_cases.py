@@ -73,14 +73,8 @@ def test_builders_keep_to_their_size_and_solids_are_not_inside_out(design: Desig
         assert np.einsum("ij,ij->", a, np.cross(b, c)) / 6 > -1e-9, part.material.name
 
 
-def test_triangle_budget() -> None:
-    counts = [sum(len(part.solid.faces) for part in d.build(d.size_m)) for d in OWN[::4]]
-    assert np.median(counts) < 4_000
-    assert max(counts) < 26_000
-
-
 def test_building_twice_gives_the_same() -> None:
-    for design in OWN[::60]:
+    for design in designs()[::60]:
         first, second = built(design), built(design)
         for (material, one), (other_material, other) in zip(first, second, strict=True):
             assert material == other_material

@@ -16,7 +16,7 @@ from PIL import Image
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.masks.pictures import VOC_VOID, painted, read_picture, without_void
+from diorama_core.perception.inputs.masks.pictures import painted, read_picture, without_void
 from diorama_core.perception.inputs.masks.reading import read_masks
 from diorama_core.perception.inputs.masks.segments import decoded_runs, is_markup, read_segments
 from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent, read_arrays, read_folder_of_masks
@@ -79,7 +79,6 @@ def test_chosen_ids_and_white_on_black_are_objects() -> None:
     for ids in ((100, 255), (255, 7)):
         assert without_void(np.choose(IDS, (0, *ids)).astype(np.int32), 255).notes == ()
     assert found(picture(Image.fromarray(LARGE.astype(np.uint8) * 255))).max() == 1
-    assert VOC_VOID == 0xE0E0C0
 
 
 def test_a_cut_out_is_one_object() -> None:
