@@ -1,8 +1,4 @@
-"""Image cues of a room: line orientations, edges, objects and usual room sizes.
-
-A box is a row (x0, x1, y1, ceiling): left, right and far wall and ceiling height in the world frame, whose floor is
-z = 0 and whose axes are the room's. Boxes are scored many at a time.
-"""
+"""Image cues of a room: line orientations, edges, objects and usual room sizes. The world's axes are the room's."""
 
 from __future__ import annotations
 
@@ -14,7 +10,6 @@ from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.architecture.single_view.settings import SETTINGS, RoomCueSettings
 from diorama_core.artefacts import SURE_MASK, Cuboid, DetectedObject
-from diorama_core.geometry.projection import NEAR_M
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.library.taxonomy import CATEGORIES, PORTABLE, UNKNOWN, category, having
 from diorama_core.scene.types import Camera
@@ -37,7 +32,7 @@ _WALL_CATEGORIES = frozenset(c.name for c in CATEGORIES if c.mount in ("wall", "
 
 @dataclass(frozen=True, eq=False)
 class RoomCues:
-    """The cues for scoring boxes, computed once per photo."""
+    """What a photo tells of its room, computed once."""
 
     camera: Camera
     directions: Float[np.ndarray, "s 3"]
@@ -70,129 +65,6 @@ class RoomCues:
     """Headings, counter-clockwise from +X and below a half turn, of level lines that run along none of the axes."""
     slant_maps: tuple[Float32[np.ndarray, "hm wm"], ...] = ()
     """Edge maps of those."""
-    settings: RoomCueSettings = SETTINGS.cues
-
-    def hits(self, boxes: Float[np.ndarray, "b 4"], directions: Float[np.ndarray, "s 3"]) -> Int[np.ndarray, "b s"]:
-        """The axis of the face that each ray meets first: 0 a side wall, 1 the far wall, 2 floor or ceiling."""
-        ox, oy, oz = self.camera.position
-        dx, dy, dz = np.where(np.abs(directions) < 1e-9, 1e-9, directions).T
-        x0, x1, y1, top = (boxes[:, i : i + 1] for i in range(4))
-        tx = np.where(dx > 0, (x1 - ox) / dx, (x0 - ox) / dx)
-        ty = np.where(dy > 0, (y1 - oy) / dy, np.inf)
-        tz = np.where(dz > 0, (top - oz) / dz, -oz / dz)
-        return np.stack([tx, ty, tz]).argmin(axis=0)
-
-    def orientation(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
-        """Minus the share of line evidence lying on a surface that the line would have to stand out of."""
-        if len(self.directions) == 0:
-            return np.zeros(len(boxes))
-        return -((self.hits(boxes, self.directions) == self.ray_axes) * self.ray_weights).sum(axis=1)
-
-    def edges(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b 8"]:
-        """Edge evidence along the visible part of each of the eight boundaries, in picture diagonals."""
-        response, lengths = self._responses(boxes)
-        return (response - EDGE_THRESHOLD).mean(axis=-1) * lengths
-
-    def _responses(
-        self, boxes: Float[np.ndarray, "b 4"]
-    ) -> tuple[Float[np.ndarray, "b 8 samples"], Float[np.ndarray, "b 8"]]:
-        """Edge response at points along the visible part of each boundary, and that part's length in diagonals."""
-        ends = self.camera.to_camera(box_edges(boxes, self.camera.position[1]))
-        clipped, visible = self._clipped(ends)
-        lengths = np.where(visible, np.linalg.norm(clipped[..., 1, :] - clipped[..., 0, :], axis=-1), 0.0)
-        steps = (np.arange(self.settings.edge_samples) + 0.5) / self.settings.edge_samples
-        points = clipped[..., 0, None, :] + steps[:, None] * (clipped[..., 1, :] - clipped[..., 0, :])[..., None, :]
-        columns, rows = np.moveaxis((points * self.map_scale).astype(int), -1, 0)
-        _, map_height, map_width = self.edge_maps.shape
-        axes = EDGE_AXES[None, :, None]
-        response = self.edge_maps[axes, rows.clip(0, map_height - 1), columns.clip(0, map_width - 1)]
-        k = self.camera.intrinsics
-        return response, lengths / np.hypot(k.width, k.height)
-
-    def _clipped(
-        self, ends: Float[np.ndarray, "b 8 2 3"]
-    ) -> tuple[Float[np.ndarray, "b 8 2 2"], Bool[np.ndarray, "b 8"]]:
-        """Boundaries in pixels, cut to what is before the camera and within the picture."""
-        a, b = ends[..., 0, :], ends[..., 1, :]
-        za, zb = a[..., 2], b[..., 2]
-        span = np.where(np.abs(zb - za) < 1e-9, 1e-9, zb - za)
-        cut = ((NEAR_M - za) / span)[..., None]
-        at_near = a + cut * (b - a)
-        start = np.where((za < NEAR_M)[..., None], at_near, a)
-        end = np.where((zb < NEAR_M)[..., None], at_near, b)
-        k = self.camera.intrinsics
-        scale, centre = np.array([k.fx, k.fy]), np.array([k.cx, k.cy])
-        p = start[..., :2] / np.maximum(start[..., 2:], NEAR_M) * scale + centre
-        q = end[..., :2] / np.maximum(end[..., 2:], NEAR_M) * scale + centre
-        low, high, inside = _clip_to_picture(p, q, k.width, k.height)
-        clipped = np.stack([p + low[..., None] * (q - p), p + high[..., None] * (q - p)], axis=-2)
-        return clipped, inside & ~((za < NEAR_M) & (zb < NEAR_M))
-
-    def objects(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
-        """Negative protrusion of objects from the box: standing ones 0 to 2, hanging ones half."""
-        hung = -0.5 * np.clip((self.hung_top_m - boxes[:, 3]) / (2.0 * self.settings.protrusion_scale_m), 0.0, 1.0)
-        if len(self.object_low) == 0:
-            return hung
-        out = np.stack(
-            [
-                boxes[:, 0:1] - self.object_low[:, 0],
-                self.object_high[:, 0] - boxes[:, 1:2],
-                self.object_high[:, 1] - boxes[:, 2:3],
-                self.object_high[:, 2] - boxes[:, 3:4],
-            ]
-        )
-        cost = np.minimum(np.maximum(out, 0.0).max(axis=0) / self.settings.protrusion_scale_m, 2.0)
-        return hung - (cost * self.object_weights).sum(axis=1) / self.object_weights.sum()
-
-    def prior(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
-        """Log-normal preference for rooms of usual size."""
-        sizes = np.stack([boxes[:, 1] - boxes[:, 0], boxes[:, 2] - self.camera.position[1], boxes[:, 3]], axis=1)
-        deviation = np.log(np.maximum(sizes, 1e-3) / PRIOR_MEDIAN_M) / PRIOR_LOG_SIGMA
-        # Beyond two sigma the cost grows linearly: halls and lofts exist.
-        far = np.maximum(np.abs(deviation) - 2.0, 0.0)
-        return -(0.5 * np.minimum(np.abs(deviation), 2.0) ** 2 + far).sum(axis=1)
-
-    def score(self, boxes: Float[np.ndarray, "b 4"]) -> Float[np.ndarray, "b"]:
-        """The objective of the search; impossible boxes get minus infinity."""
-        ox, oy, oz = self.camera.position
-        possible = (boxes[:, 0] < ox - 0.2) & (boxes[:, 1] > ox + 0.2) & (boxes[:, 2] > oy + 0.5)
-        possible &= boxes[:, 3] > oz + 0.1
-        total = self.settings.orientation_weight * self.orientation(boxes) + self.settings.edge_weight * self.edges(
-            boxes
-        ).sum(axis=1)
-        total += self.settings.object_weight * self.objects(boxes) + self.settings.prior_weight * self.prior(boxes)
-        return np.where(possible, total, -np.inf)
-
-
-EDGE_AXES = np.array([1, 1, 0, 2, 2, 1, 1, 0])
-"""Axis of each boundary of `box_edges`."""
-
-
-def box_edges(boxes: Float[np.ndarray, "b 4"], y0: float) -> Float[np.ndarray, "b 8 2 3"]:
-    """World ends of a box's boundaries: floor left, right and back, corners left and right, ceiling likewise.
-
-    Side boundaries run from `y0` to the far wall.
-    """
-    x0, x1, y1, top = boxes.T
-    near, zero = np.full_like(x0, y0), np.zeros_like(x0)
-    a, b = np.stack([x0, y1, zero], -1), np.stack([x1, y1, zero], -1)
-    c, d = np.stack([x0, y1, top], -1), np.stack([x1, y1, top], -1)
-    a0, b0 = np.stack([x0, near, zero], -1), np.stack([x1, near, zero], -1)
-    c0, d0 = np.stack([x0, near, top], -1), np.stack([x1, near, top], -1)
-    pairs = [(a0, a), (b0, b), (a, b), (a, c), (b, d), (c0, c), (d0, d), (c, d)]
-    return np.stack([np.stack(pair, axis=1) for pair in pairs], axis=1)
-
-
-def _clip_to_picture(
-    p: Float[np.ndarray, "*n 2"], q: Float[np.ndarray, "*n 2"], width: int, height: int
-) -> tuple[Float[np.ndarray, "*n"], Float[np.ndarray, "*n"], Bool[np.ndarray, "*n"]]:
-    """Where segments p..q enter and leave the picture, as shares of their length (Liang and Barsky 1984)."""
-    step = q - p
-    safe = np.where(np.abs(step) < 1e-9, 1e-9, step)
-    first, second = -p / safe, (np.array([width, height]) - p) / safe
-    low = np.minimum(first, second).max(axis=-1).clip(0.0, 1.0)
-    high = np.maximum(first, second).min(axis=-1).clip(0.0, 1.0)
-    return low, high, high > low
 
 
 def segment_axes(segments: Float[np.ndarray, "n 4"], camera: Camera) -> Int[np.ndarray, "n"]:
@@ -266,7 +138,6 @@ def gather_room_cues(
             _edge_map(oblique[rows_of_direction], objects, rgb.shape[:2], map_scale, settings=settings)
             for _, rows_of_direction in slants
         ),
-        settings=settings,
     )
 
 

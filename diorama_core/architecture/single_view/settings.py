@@ -13,7 +13,6 @@ class RoomCueSettings:
     """Longest side of the edge maps."""
     edge_sigma: float = 0.006
     """Width of the edges' response, as a share of the picture's diagonal."""
-    edge_samples: int = 40
     slant_share: float = 0.025
     slant_diagonals: float = 0.12
     """Minimum share of all segments, and length in image diagonals, of an accepted slanted direction."""
@@ -27,24 +26,15 @@ class RoomCueSettings:
     unseen_foot: float = 0.3
     """What an object says about the walls whose distance only its size tells, against one that is seen to stand
     there."""
-    orientation_weight: float = 2.0
     edge_weight: float = 1.0
     object_weight: float = 0.5
     prior_weight: float = 0.1
-    protrusion_scale_m: float = 0.25
 
 
 @dataclass(frozen=True)
 class RoomSearchSettings:
-    """How the room is searched: as a box, then as a chain of walls."""
+    """How the room is searched as a chain of walls."""
 
-    refinements: tuple[float, float, float] = (0.08, 0.03, 0.012)
-    sweeps: int = 3
-    finalists: int = 4
-    """Number of starts that are continued after their first round."""
-    max_lines: int = 40
-    """Segments, longest first, that suggest candidates."""
-    margin_m: float = 0.05
     region_weight: float = 6.0
     line_weight: float = 2.5
     skirtings_m: tuple[float, ...] = (0.06, 0.08, 0.1, 0.12)

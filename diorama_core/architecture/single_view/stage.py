@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.single_view.box_search import find_box
 from diorama_core.architecture.single_view.level_view import level_view
-from diorama_core.architecture.single_view.room_cues import MAX_CEILING_M, RoomCues, gather_room_cues
+from diorama_core.architecture.single_view.room_cues import MAX_CEILING_M, PRIOR_MEDIAN_M, RoomCues, gather_room_cues
 from diorama_core.architecture.single_view.settings import SETTINGS, PhotoRoomSettings, RoomSearchSettings
 from diorama_core.architecture.single_view.wall_chain import (
     Chain,
@@ -34,11 +33,13 @@ from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture, Plane
 
 CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 28)
+ABOVE_CAMERA_M = 0.4
+"""Least height of the first ceiling above the camera."""
 
 
 @dataclass(frozen=True)
 class PhotoRoom:
-    """Walls by dynamic programming over headings (Flint et al. 2010), started from a room box (Hedau et al. 2009).
+    """Walls by dynamic programming over headings (Flint et al. 2010).
 
     The floor is z = 0 of the metric camera. Boxes, L-shapes and rooms with a slanted wall are one kind of thing: a
     chain of upright planes that lines, edges, colours and the objects in the room support best.
@@ -56,10 +57,9 @@ class PhotoRoom:
         """
         progress.report(0.0, "Looking for the room's walls")
         cues = gather_room_cues(inputs.photo.rgb, geometry.camera, objects, geometry.cuboids, self.settings.cues)
-        box = find_box(cues, self.settings.search)[0]
         progress.report(0.4, "Following the walls from left to right")
         scorer = ChainScorer(cues, level_view(inputs.photo.rgb, cues, objects), self.settings)
-        chain = found_chain(scorer, box, self.settings.search)
+        chain = found_chain(scorer, self.settings.search)
         sure = GUESS_CONFIDENCE + (0.9 - GUESS_CONFIDENCE) * scorer.support(chain)
         pieces = _pieces(chain, scorer, sure, self.settings.search)
         top_m = max(chain.ceiling_m, _highest(cues, self.settings.search))
@@ -83,30 +83,27 @@ class PhotoRoom:
         )
 
 
-def found_chain(scorer: ChainScorer, box: Float[np.ndarray, "4"], settings: RoomSearchSettings) -> Chain:
-    """The best chain of walls, its ceiling first taken from a room box (x0, x1, y1, ceiling)."""
-    walls = candidate_walls(scorer.cues, box, settings)
-    chain = best_chain(scorer, walls, float(box[3]))
+def found_chain(scorer: ChainScorer, settings: RoomSearchSettings) -> Chain:
+    """The best chain of walls, first below a ceiling of usual height that is above the camera and the objects."""
+    cues, walls = scorer.cues, candidate_walls(scorer.cues, settings)
+    lowest_m = max(float(cues.camera.position[2]) + ABOVE_CAMERA_M, _highest(cues, settings))
+    chain = best_chain(scorer, walls, max(float(PRIOR_MEDIAN_M[2]), lowest_m))
     chain = best_chain(scorer, walls, best_ceiling(scorer, chain, CEILINGS_M))
     return refined(scorer, chain, CEILINGS_M)
 
 
-def candidate_walls(cues: RoomCues, box: Float[np.ndarray, "4"], settings: RoomSearchSettings) -> PhotoWalls:
-    """Walls across the room's axes and the slanted direction, at many distances and at those of the box."""
+def candidate_walls(cues: RoomCues, settings: RoomSearchSettings) -> PhotoWalls:
+    """Walls across the room's axes and the slanted direction, at many distances and at those of lines."""
     eye = cues.camera.position[:2]
     away = np.geomspace(settings.nearest_m, settings.farthest_m, settings.distances)
-    facing = [
-        (np.array([1.0, 0.0]), 0, float(eye[0] - box[0])),
-        (np.array([-1.0, 0.0]), 0, float(box[1] - eye[0])),
-        (np.array([0.0, -1.0]), 1, float(box[2] - eye[1])),
-    ]
+    facing = [(np.array([1.0, 0.0]), 0), (np.array([-1.0, 0.0]), 0), (np.array([0.0, -1.0]), 1)]
     for number, angle in enumerate(cues.slants_rad):
         square = np.array([-np.sin(angle), np.cos(angle)])
-        facing += [(sign * square, 2 + number, settings.nearest_m) for sign in (1.0, -1.0)]
+        facing += [(sign * square, 2 + number) for sign in (1.0, -1.0)]
     normals, offsets, directions = [], [], []
-    for normal, direction, box_indices in facing:
+    for normal, direction in facing:
         seen = _distances_of_lines(cues, normal, 1 - direction, settings) if direction < 2 else np.zeros(0)
-        distances = np.unique(np.concatenate([away, [box_indices], seen]))
+        distances = np.unique(np.concatenate([away, seen]))
         normals.append(np.repeat(normal[None], len(distances), axis=0))
         offsets.append(float(normal @ eye) - distances)
         directions.append(np.full(len(distances), direction))
