@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.architecture.single_view.level_view import level_view
-from diorama_core.architecture.single_view.room_cues import MAX_CEILING_M, PRIOR_MEDIAN_M, RoomCues, gather_room_cues
+from diorama_core.architecture.single_view.room_cues import MAX_CEILING_M, RoomCues, gather_room_cues
 from diorama_core.architecture.single_view.settings import SETTINGS, PhotoRoomSettings, RoomSearchSettings
 from diorama_core.architecture.single_view.wall_chain import (
     Chain,
@@ -34,7 +34,9 @@ from diorama_core.scene.types import Architecture, Plane
 
 CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 28)
 ABOVE_CAMERA_M = 0.4
-"""Least height of the first ceiling above the camera."""
+"""Least height of a first ceiling above the camera."""
+FIRST_CEILINGS_M = (2.2, 2.9, 3.8, 5.0)
+"""From low to `MAX_CEILING_M`, in steps of a third."""
 
 
 @dataclass(frozen=True)
@@ -84,12 +86,12 @@ class PhotoRoom:
 
 
 def found_chain(scorer: ChainScorer, settings: RoomSearchSettings) -> Chain:
-    """The best chain of walls, first below a ceiling of usual height that is above the camera and the objects."""
-    cues, walls = scorer.cues, candidate_walls(scorer.cues, settings)
-    lowest_m = max(float(cues.camera.position[2]) + ABOVE_CAMERA_M, _highest(cues, settings))
-    chain = best_chain(scorer, walls, max(float(PRIOR_MEDIAN_M[2]), lowest_m))
-    chain = best_chain(scorer, walls, best_ceiling(scorer, chain, CEILINGS_M))
-    return refined(scorer, chain, CEILINGS_M)
+    """The cheapest chain of walls, begun below several ceilings: which walls are best depends on how high they are."""
+    walls = candidate_walls(scorer.cues, settings)
+    above_camera_m = float(scorer.cues.camera.position[2]) + ABOVE_CAMERA_M
+    begun = (best_chain(scorer, walls, max(height, above_camera_m)) for height in FIRST_CEILINGS_M)
+    chains = [best_chain(scorer, walls, best_ceiling(scorer, chain, CEILINGS_M)) for chain in begun]
+    return refined(scorer, min(chains, key=lambda chain: chain.cost), CEILINGS_M)
 
 
 def candidate_walls(cues: RoomCues, settings: RoomSearchSettings) -> PhotoWalls:
