@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol, runtime_checkable
 
 import cv2
 import numpy as np
@@ -19,6 +18,7 @@ from diorama_core.errors import UnavailableError
 from diorama_core.geometry.depth_grid import smooth_normals_camera
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalised, resized
 from diorama_core.models.runtime import SHARED_SESSIONS, SINGLE, Dims, NetworkError, SessionPool
+from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.scene.types import Intrinsics
 
 SAMPLES = 64
@@ -29,29 +29,6 @@ FOCAL_PRIOR = 1e-8
 """Decides only where the points do not: a flat wall seen squarely fits every focal length."""
 MAX_PIXELS = 700 * 700
 """Larger pictures are reduced for MoGe-2: its tokens cover no more detail."""
-
-
-@dataclass(frozen=True, eq=False)
-class SeenDepth:
-    """What a geometry network says of a picture, in its pixels."""
-
-    depth_m: Float32[np.ndarray, "h w"]
-    normals_camera: Float32[np.ndarray, "h w 3"]
-    intrinsics: Intrinsics
-    log_sigma: Float32[np.ndarray, "h w"] | None = None
-    """Deviation of the depth's logarithm where it is rough, and evidence beside other evidence; None where it may stand
-    for measured depth."""
-    scale_log_sigma: float = 0.0
-    """Deviation of the logarithm of a rough depth's scale."""
-
-
-@runtime_checkable
-class GeometryNetwork(Protocol):
-    """Input: an upright RGB picture, eight bits, and its intrinsics where they are known."""
-
-    def predict(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
-        """Depth, normals and intrinsics in the picture's pixels."""
-        ...
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 from jaxtyping import UInt8
 
-from diorama_core.models.depth import SeenDepth
 from diorama_core.models.images import resized
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.models.store import derived_graph
 from diorama_core.models.tflite_graph import onnx_graph
 from diorama_core.scene.types import Intrinsics

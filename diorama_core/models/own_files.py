@@ -18,9 +18,9 @@ from diorama_core.errors import InputError
 from diorama_core.geometry.depth_grid import smooth_normals_camera
 from diorama_core.io.bounded import read_bytes
 from diorama_core.models.boxes import Detections, clipped, without_doubles
-from diorama_core.models.depth import SeenDepth
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalised, resized
 from diorama_core.models.runtime import SHARED_SESSIONS, Dims, NetworkError, SessionPool
+from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.models.store import sha256_of
 from diorama_core.models.yolox import COCO_CLASSES, decoded, letterboxed
 from diorama_core.scene.types import Intrinsics

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.clip import DuoduoClip, OpenClip
-from diorama_core.models.depth import DepthAnything3, GeometryNetwork, Metric3d, Moge2
+from diorama_core.models.depth import DepthAnything3, Metric3d, Moge2
 from diorama_core.models.fast_depth import FastDepth
 from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
@@ -18,6 +18,7 @@ from diorama_core.models.manifest import network
 from diorama_core.models.network import Network
 from diorama_core.models.openshape import OpenShape
 from diorama_core.models.owlv2 import SIDE, Owlv2
+from diorama_core.models.seen_depth import GeometryNetwork
 from diorama_core.models.segment_anything import BoxSegmenter, Sam2, SlimSam, sam3_tracker
 from diorama_core.models.store import ModelStore
 from diorama_core.models.yolox import Yolox

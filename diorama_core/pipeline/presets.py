@@ -19,13 +19,13 @@ from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.errors import UnavailableError
 from diorama_core.io.assets import has_own_recogniser
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.models.depth import GeometryNetwork
 from diorama_core.models.fast_depth import FastDepth
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.manifest import network
 from diorama_core.models.network import Network
 from diorama_core.models.own_files import FileDepth, FileDetector
 from diorama_core.models.recogniser import own_recogniser
+from diorama_core.models.seen_depth import GeometryNetwork
 from diorama_core.models.store import ModelStore, how_to_get
 from diorama_core.perception.camera.estimate import with_given_attitude
 from diorama_core.perception.foundation.depth_prediction import (

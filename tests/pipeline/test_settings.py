@@ -73,7 +73,7 @@ def test_an_optional_stage_is_left_out_by_its_name(stages):
         (False, "retrieval.settings.pools.related_factor", retrieval.SETTINGS.pools, 0.1),
         (False, "camera.settings.few_segments", lines.SETTINGS, 7.0),
         (False, "geometry.settings.placement.sure_cost", metrology.SETTINGS.placement, 11.0),
-        (False, "architecture.settings.search.margin_m", photo_room.SETTINGS.search, 0.07),
+        (False, "architecture.settings.search.clearance_m", photo_room.SETTINGS.search, 0.07),
         (True, "geometry.settings.voxel_m", measured_objects.SETTINGS, 0.05),
         (True, "architecture.settings.seen_through", walls.SETTINGS, 0.5),
         (True, "graph.settings.larger_cost", graph.SETTINGS, 3.0),

@@ -35,6 +35,10 @@ class RoomCueSettings:
 class RoomSearchSettings:
     """How the room is searched as a chain of walls."""
 
+    first_ceilings_m: tuple[float, ...] = (2.2, 2.9, 3.8, 5.0)
+    """Below which chains are begun, from low to the highest in steps of a third."""
+    above_camera_m: float = 0.4
+    """Least height of these above the camera."""
     region_weight: float = 6.0
     line_weight: float = 2.5
     skirtings_m: tuple[float, ...] = (0.06, 0.08, 0.1, 0.12)

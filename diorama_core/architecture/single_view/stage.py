@@ -33,10 +33,6 @@ from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture, Plane
 
 CEILINGS_M = np.geomspace(2.1, MAX_CEILING_M, 28)
-ABOVE_CAMERA_M = 0.4
-"""Least height of a first ceiling above the camera."""
-FIRST_CEILINGS_M = (2.2, 2.9, 3.8, 5.0)
-"""From low to `MAX_CEILING_M`, in steps of a third."""
 
 
 @dataclass(frozen=True)
@@ -88,8 +84,8 @@ class PhotoRoom:
 def found_chain(scorer: ChainScorer, settings: RoomSearchSettings) -> Chain:
     """The cheapest chain of walls, begun below several ceilings: which walls are best depends on how high they are."""
     walls = candidate_walls(scorer.cues, settings)
-    above_camera_m = float(scorer.cues.camera.position[2]) + ABOVE_CAMERA_M
-    begun = (best_chain(scorer, walls, max(height, above_camera_m)) for height in FIRST_CEILINGS_M)
+    above_camera_m = float(scorer.cues.camera.position[2]) + settings.above_camera_m
+    begun = (best_chain(scorer, walls, max(height, above_camera_m)) for height in settings.first_ceilings_m)
     chains = [best_chain(scorer, walls, best_ceiling(scorer, chain, CEILINGS_M)) for chain in begun]
     return refined(scorer, min(chains, key=lambda chain: chain.cost), CEILINGS_M)
 

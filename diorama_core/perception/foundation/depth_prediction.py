@@ -14,7 +14,7 @@ from diorama_core.artefacts import (
     ObjectGeometry,
     Photo,
 )
-from diorama_core.models.depth import GeometryNetwork
+from diorama_core.models.seen_depth import GeometryNetwork
 from diorama_core.perception.camera.estimate import EmbeddedCamera
 from diorama_core.perception.depth import filled_depth, render_geometry
 from diorama_core.progress import Progress

@@ -13,9 +13,9 @@ import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
-from diorama_core.models.depth import GeometryNetwork, SeenDepth
 from diorama_core.models.foreground import ForegroundNetwork
 from diorama_core.models.inpainting import Filler
+from diorama_core.models.seen_depth import GeometryNetwork, SeenDepth
 from diorama_core.progress import Progress
 from diorama_core.protocols import ArchitectureStage
 

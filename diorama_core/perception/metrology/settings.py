@@ -38,6 +38,11 @@ class BoxObservationSettings:
     middle: float = 0.6
     lower: float = 0.1
     """Shares of a box: of its width along which its lower end is looked at, and of its height above its lower edge."""
+    floor_share: float = 0.9
+    """Share of the unmarked surfaces below the camera that a depth network sees above the floor or on it: a few are
+    seen too low."""
+    least_free: float = 0.02
+    """Least share of the picture that is unmarked and below the camera, so that it tells where the floor is."""
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from diorama_core.architecture.from_depth import PlanarRoom
-from diorama_core.models.depth import SeenDepth
 from diorama_core.models.foreground import ForegroundNetwork
+from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource

@@ -9,7 +9,7 @@ import pytest
 
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, DetectedObject, Inputs, ObjectGeometry, Photo
 from diorama_core.geometry.casting import camera_rays, cast_box
-from diorama_core.models.depth import SeenDepth
+from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.perception.metrology.problem import UNTOLD, View
 from diorama_core.perception.metrology.rough_depth import seen_depths
