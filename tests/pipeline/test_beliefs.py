@@ -22,7 +22,7 @@ PLAIN = BeliefSettings(present=(0.0, 1.0), front=1.0, front_compared=0.0)
 
 
 def choice(edge: Support, **probabilities: float) -> SupportChoice:
-    return SupportChoice(SupportHypothesis(edge, "object", category("lamp")), None, {}, probabilities)
+    return SupportChoice(SupportHypothesis(edge, "object", category("lamp")), {}, probabilities)
 
 
 def beliefs_of(
