@@ -20,9 +20,10 @@ SIDE_PX = 224
 USUAL_FOCAL = 519 / 640
 """Focal length over width of the camera of NYU Depth v2, whose pictures it learnt from."""
 LOG_SIGMA = 0.2
-"""Of depth in the right scale: the mean relative error is .17 in four photos that it did not learn from."""
+"""Deviation of the logarithm of depth in the right scale: its mean relative error is .17 in four photos that it did not
+learn from."""
 SCALE_LOG_SIGMA = 0.2
-"""Of the scale: the mean relative error in metres is .23 in eight photos."""
+"""Deviation of the logarithm of the scale: the mean relative error in metres is .23 in eight photos."""
 LEAST_M = 0.1
 """Eight bits have a depth of 0 too."""
 
