@@ -13,7 +13,6 @@ from diorama_core.models.images import resized
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.models.store import derived_graph
-from diorama_core.models.tflite_graph import onnx_graph
 from diorama_core.scene.types import Intrinsics
 
 SIDE_PX = 224
@@ -46,10 +45,15 @@ class FastDepth:
         """
         height, width = rgb.shape[:2]
         k = intrinsics or Intrinsics(width, height, USUAL_FOCAL * width, USUAL_FOCAL * width, width / 2, height / 2)
-        graph = derived_graph(f"fast-depth-{self.weights}", lambda: onnx_graph(self.published.read_bytes()))
+        graph = derived_graph(f"fast-depth-{self.weights}", self._converted)
         pixels = resized(rgb, (SIDE_PX, SIDE_PX)).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255)
         shape = (1, 1, SIDE_PX, SIDE_PX)
         seen = self.pool.get(graph).run({"input": np.ascontiguousarray(pixels)}, {"output": shape})["output"]
         small = np.log(np.maximum(seen[0, 0], LEAST_M)) + np.log(k.fx / width / USUAL_FOCAL)
         depth = np.exp(cv2.resize(small.astype(np.float32), (width, height)))
         return SeenDepth(depth, np.zeros_like(rgb, np.float32), k, np.full_like(depth, LOG_SIGMA), SCALE_LOG_SIGMA)
+
+    def _converted(self) -> bytes:
+        from diorama_core.models.tflite_graph import onnx_graph  # with two libraries that nothing else needs
+
+        return onnx_graph(self.published.read_bytes())

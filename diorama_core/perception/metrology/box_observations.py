@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,11 +10,15 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import DetectedObject
+from diorama_core.geometry.casting import camera_rays
+from diorama_core.geometry.projection import NEAR_M
 from diorama_core.library.taxonomy import Category, category
+from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.perception.metrology.priors import SizeMode, size_modes
-from diorama_core.perception.metrology.problem import UNTOLD
+from diorama_core.perception.metrology.problem import UNTOLD, View
 from diorama_core.perception.metrology.settings import SETTINGS, BoxObservationSettings, MetrologySettings
 from diorama_core.perception.metrology.silhouette import CORNER_EDGES, mask_reach
+from diorama_core.scene.types import Camera
 
 _OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
 HIDDEN_ODDS = np.array([0.06, 0.03, 0.06, 0.12])
@@ -169,6 +174,37 @@ def gather(
         meanings,
         settings,
     )
+
+
+def seen_depths(
+    seen: SeenDepth,
+    objects: Sequence[DetectedObject],
+    view: View,
+    settings: BoxObservationSettings = SETTINGS.observed,
+) -> SeenDepths | None:
+    """The depths of objects over the camera's height; None where hardly anything below the camera is unmarked.
+
+    Args:
+        seen: depth and deviation of every pixel.
+        objects: with masks of shape (h, w).
+        view: intrinsics, and rotation from camera to world.
+        settings: of what is observed.
+    """
+    if seen.log_sigma is None:
+        raise ValueError("the depth is no rough one")
+    log_depth = np.log(np.maximum(seen.depth_m, NEAR_M))
+    pose = np.eye(4)
+    pose[:3, :3] = view.R_world_camera
+    below = -camera_rays(Camera(view.intrinsics, pose))[1][..., 2] * np.exp(log_depth)
+    marked = np.logical_or.reduce([o.mask for o in objects]) if objects else np.zeros(log_depth.shape, bool)
+    free = below[(below > 0) & ~marked]
+    if len(free) < settings.least_free * log_depth.size:
+        return None
+    log_height = float(np.log(np.quantile(free, settings.floor_share)))
+    outlined = [o.mask.any() for o in objects]
+    depth = [np.median(log_depth[o.mask]) if known else 0.0 for o, known in zip(objects, outlined, strict=True)]
+    sigma = [np.median(seen.log_sigma[o.mask]) if known else UNTOLD for o, known in zip(objects, outlined, strict=True)]
+    return SeenDepths(log_height, seen.scale_log_sigma, np.array(depth) - log_height, np.array(sigma, dtype=float))
 
 
 def _before(

@@ -17,12 +17,11 @@ from diorama_core.artefacts import (
     Photo,
 )
 from diorama_core.models.seen_depth import GeometryNetwork
-from diorama_core.perception.metrology.box_observations import BoxObservations, gather
+from diorama_core.perception.metrology.box_observations import BoxObservations, gather, seen_depths
 from diorama_core.perception.metrology.floor import HeightScan, scan_heights
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement, place_all
 from diorama_core.perception.metrology.problem import View
 from diorama_core.perception.metrology.reading import confidence_of, foot_seen, heading_and_size, reasons_of
-from diorama_core.perception.metrology.rough_depth import seen_depths
 from diorama_core.perception.metrology.settings import SETTINGS, HeightScanSettings, MetrologySettings
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource

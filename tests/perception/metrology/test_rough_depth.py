@@ -11,8 +11,8 @@ from diorama_core.artefacts import CameraEstimate, CameraHypothesis, DetectedObj
 from diorama_core.geometry.casting import camera_rays, cast_box
 from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.perception.metrology import SingleViewMetrology
+from diorama_core.perception.metrology.box_observations import seen_depths
 from diorama_core.perception.metrology.problem import UNTOLD, View
-from diorama_core.perception.metrology.rough_depth import seen_depths
 from diorama_core.progress import Progress
 from diorama_core.provenance import CameraSource
 from diorama_core.scene.types import Camera, Intrinsics, yaw_rotation
