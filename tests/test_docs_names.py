@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from diorama_app.cli import _parser, main
+from diorama_app.cli import command_parser, main
 
 ROOT = Path(__file__).parents[1]
 PAGES = [
@@ -23,7 +23,7 @@ FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"`([^`\n]+)`")
 LINK = re.compile(r"\]\((?!\w+:)([^)#\s]*)(?:#([^)\s]+))?\)")
 PATH = re.compile(r"(?:\./)?[\w.-]+(?:/[\w.*-]+)+/?|[\w-]+\.(?:py|toml|yml)")
-PARSER = _parser()
+PARSER = command_parser()
 TOP = (
     "addons/",
     "assets/",

@@ -39,7 +39,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a file's name may hold bytes that are no text
-    arguments = _parser().parse_args(argv)
+    arguments = command_parser().parse_args(argv)
     for name, value in vars(arguments).items():
         setattr(arguments, name, clean_strings(value))  # words; paths stay the bytes that they are
     if arguments.command == "build":
@@ -82,7 +82,8 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def _parser() -> argparse.ArgumentParser:
+def command_parser() -> argparse.ArgumentParser:
+    """The parser of all commands."""
     parser = argparse.ArgumentParser(
         prog="diorama", description="One picture of a room becomes an editable 3D scene.", allow_abbrev=False
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from diorama_app.cli.arguments import command, progress_bar
-from diorama_app.cli.bench_photos import Bench, add_photos, add_review_bench, show_bench, write_json, write_text
+from diorama_app.cli.bench_photos import Bench, add_photos, add_questions_bench, show_bench, write_json, write_text
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
@@ -35,7 +35,9 @@ def add_bench(commands: Any) -> None:
     """Declare `diorama bench`."""
     p: argparse.ArgumentParser = commands.add_parser("bench", help="Measure the stages on rooms of known truth.")
     tables = p.add_subparsers(
-        dest="table", required=True, metavar="|".join([*(name for name, _, _ in TABLES), "photos", "recognition"])
+        dest="table",
+        required=True,
+        metavar="|".join([*(name for name, _, _ in TABLES), "photos", "questions", "recognition"]),
     )
     runs = {"layout": _bench_layout, "speed": _bench_speed, "rooms": _bench_survey, "system": _bench_system}
     runs["text"] = _bench_text
@@ -79,7 +81,7 @@ def add_bench(commands: Any) -> None:
             )
             one.add_argument("--quick", action="store_true", help="small quantities only, about a minute")
     add_photos(tables)
-    add_review_bench(tables)
+    add_questions_bench(tables)
     _add_recognition(tables)
 
 

@@ -1,4 +1,4 @@
-"""`diorama bench photos` and `bench review`: annotated photos as they are, perturbed, in folds, and reviewed."""
+"""`diorama bench photos` and `bench questions`: annotated photos as they are, perturbed, in folds, and reviewed."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ def add_photos(tables: Any) -> None:
     one.add_argument("--sheet", type=Path, metavar="FILE", help="write a sheet of photos beside their scenes")
 
 
-def add_review_bench(tables: Any) -> None:
-    """Declare `diorama bench review`."""
-    example = "diorama bench review annotations.json --photos pictures"
-    text = "What answers to a review are worth, by annotated photos or rendered rooms, and how sure builds are."
-    one = command(tables, "review", _bench_review, text, example)
+def add_questions_bench(tables: Any) -> None:
+    """Declare `diorama bench questions`."""
+    example = "diorama bench questions annotations.json --photos pictures"
+    text = "What answers to a review's questions are worth, by annotated photos or rendered rooms; how sure builds are."
+    one = command(tables, "questions", _bench_questions, text, example)
     _add_sources(one, needed=False)
-    one.add_argument("--rooms", type=int, default=0, metavar="N", help="review N rendered rooms in place of photos")
+    one.add_argument("--scenes", type=int, default=0, metavar="N", help="review N rendered rooms in place of photos")
     one.add_argument("--seed", type=int, default=0, metavar="N", help="of the series of rooms (default: %(default)s)")
 
 
@@ -76,16 +76,16 @@ def _add_sources(one: argparse.ArgumentParser, *, needed: bool = True) -> None:
     one.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables as Markdown, or into their place")
 
 
-def _bench_review(a: argparse.Namespace) -> None:
+def _bench_questions(a: argparse.Namespace) -> None:
     from diorama_core.evaluation.benchmarks import photos as photos_bench
     from diorama_core.evaluation.benchmarks import review, review_rooms
     from diorama_core.library.catalogue import built_in_library
 
-    if bool(a.rooms) == bool(a.annotations):
-        raise InputError("give annotations with --photos, or --rooms N")
-    if a.rooms:
+    if bool(a.scenes) == bool(a.annotations):
+        raise InputError("give annotations with --photos, or --scenes N")
+    if a.scenes:
         with progress_bar() as progress:
-            rooms = review_rooms.run(built_in_library(), a.rooms, a.seed, progress, named=not a.unnamed)
+            rooms = review_rooms.run(built_in_library(), a.scenes, a.seed, progress, named=not a.unnamed)
         show_bench(rooms, a)
         return
     sources = _sources(a.annotations, a.photos)

@@ -96,6 +96,9 @@ def _add_inputs(p: argparse.ArgumentParser) -> None:
         "--half-turn", action="store_true", help="the photo and its files are upside down: turn them by 180 degrees"
     )
     p.add_argument(
+        "--flat", action="store_true", help="the photo shows one direction, although it looks like a panorama"
+    )
+    p.add_argument(
         "--boxes",
         type=Path,
         metavar="FILE",
@@ -196,7 +199,7 @@ def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
     if a.arrangements < 1:
         raise InputError(f"--arrangements {a.arrangements}: ask for at least one")
     files = PhotoFiles(
-        a.image, a.boxes, a.masks, a.depth, a.intrinsics, a.fov, a.distortion, a.half_turn, a.camera_height
+        a.image, a.boxes, a.masks, a.depth, a.intrinsics, a.fov, a.distortion, a.half_turn, a.camera_height, a.flat
     )
     try:
         with progress_bar() as progress:

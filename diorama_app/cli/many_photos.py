@@ -57,6 +57,8 @@ def check_options_of_one_photo(a: argparse.Namespace) -> None:
     single = {"--depth": a.depth, "--intrinsics": a.intrinsics, "--boxes": a.boxes, "--masks": a.masks}
     if a.half_turn:
         raise InputError("--half-turn is for one photo; build upside-down photos of a folder one by one")
+    if a.flat:
+        raise InputError("--flat is for one photo; build photos of a folder that look like panoramas one by one")
     if a.distortion:
         raise InputError("--distortion is for one photo; straighten the photos of a folder before")
     named = next((name for name, value in single.items() if value is not None), None)

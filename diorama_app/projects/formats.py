@@ -65,6 +65,7 @@ GUIDES: Mapping[str, Guide] = {
     "robot": Guide(
         SIMULATORS, "MuJoCo, Drake; made for ROS 2 (nav2) and Isaac Sim: one zip with maps and places", _BODIES
     ),
+    "occupancy": Guide(SIMULATORS, "made for ROS 2 (nav2) and other planners", frozenset()),
     "svg": Guide(PLANS, "Chromium, Inkscape; made for other browsers and Illustrator", _FURNITURE),
     "pdf": Guide(PLANS, "poppler; made for any PDF viewer, prints to scale", _FURNITURE),
     "dxf": Guide(PLANS, "LibreCAD; made for AutoCAD and QCAD", _FURNITURE),

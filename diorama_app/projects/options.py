@@ -42,6 +42,8 @@ class PhotoFiles:
     """Whether all of them are upside down."""
     camera_height_m: float | None = None
     """Above the floor."""
+    flat: bool = False
+    """Whether the photo shows one direction although it looks like a panorama."""
 
 
 @dataclass(frozen=True)
@@ -104,6 +106,7 @@ def build_files(
         camera_height_m=files.camera_height_m,
         distortion=files.distortion,
         half_turn=files.half_turn,
+        flat=files.flat,
         profile=options.profile,
         networks=options.networks(files),
         recipe=options.recipe,

@@ -45,6 +45,7 @@ def build(
     camera_height_m: float | None = None,
     distortion: Sequence[float] = (),
     half_turn: bool = False,
+    flat: bool = False,
     profile: Profile = "auto",
     networks: NetworkChoice | None = None,
     recipe: RecipeName = "feasible",
@@ -73,6 +74,7 @@ def build(
         distortion: of the lens, in OpenCV's order: k1, k2, p1, p2, k3; the photo is straightened before it is used.
             By default its own lines say whether the lens bends them; 0 leaves the photo as it is.
         half_turn: whether the photo and all that belongs to it are upside down, and are turned by 180 degrees.
+        flat: whether the photo shows one direction although it looks like a panorama.
         profile: "auto" uses the networks on this machine, "embedded" none, "foundation" insists on the paper's.
         networks: detector and depth network by id, instead of the best ones on this machine.
         recipe: of the layout optimiser.
@@ -105,6 +107,7 @@ def build(
         boxes=input_arrays.boxes_file(boxes),
         masks=input_arrays.masks_file(masks),
         half_turn=half_turn,
+        flat=flat,
     )
     inputs, straightened = _straight(_at_height(read.inputs, camera_height_m), distortion)
     warnings = (*read.warnings, *straightened)

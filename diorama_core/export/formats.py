@@ -127,6 +127,13 @@ _TABLE = (
         joints=True,
     ),
     Format(
+        "occupancy",
+        "Occupancy map (ROS nav2)",
+        (".zip", ".yaml"),
+        "where the floor is free and where something stands, as a grey picture with its scale",
+        "navigation:write_occupancy",
+    ),
+    Format(
         "blend",
         "Blender file",
         (".blend",),

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import shapely
@@ -14,10 +15,13 @@ from jaxtyping import Float
 from shapely.geometry import LineString, MultiPoint, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from diorama_core.errors import ExportError
 from diorama_core.export.bodies import PhysicalScene, Points
-from diorama_core.export.colliders import world_parts
+from diorama_core.export.colliders import physical_scene, world_parts
+from diorama_core.export.files import write_package
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.overlaps import cut
+from diorama_core.progress import SILENT, Progress
 
 LOW_M, HIGH_M = 0.05, 1.5
 """What lies lower is driven over, what hangs higher is passed under."""
@@ -108,8 +112,18 @@ def standing_place(
     return float(x), float(y), float(np.arctan2(toward.y - y, toward.x - x))
 
 
-def map_files(floor: BaseGeometry, occupied: BaseGeometry, radius_m: float) -> dict[str, bytes]:
-    """`map.pgm` and `map.yaml`: occupied where a cell's middle is, free on the rest of the floor, unknown beyond."""
+def write_occupancy(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
+    """Write the map, its text beside its picture or both in a zip; raises `ExportError`, also without a floor."""
+    progress.report(0.0, "preparing colliders")
+    floor = floor_area(gathered)
+    if floor.is_empty:
+        raise ExportError("a map needs a floor, and this scene has none; draw a room first")
+    occupied = occupied_area(gathered, outlined(physical_scene(gathered)))
+    write_package(path, f"{path.stem}.yaml", map_files(floor, occupied, path.stem).items())
+
+
+def map_files(floor: BaseGeometry, occupied: BaseGeometry, name: str = "map") -> dict[str, bytes]:
+    """`NAME.pgm` and `NAME.yaml`: occupied where a cell's middle is, free on the rest of the floor, unknown beyond."""
     bounds = np.array(shapely.union(floor, occupied.intersection(floor.buffer(1.0))).bounds)
     low = np.floor(bounds[:2] / CELL_M) - MARGIN_CELLS
     columns, rows = (np.ceil(bounds[2:] / CELL_M) + MARGIN_CELLS - low).astype(int)
@@ -119,11 +133,11 @@ def map_files(floor: BaseGeometry, occupied: BaseGeometry, radius_m: float) -> d
     # Half a cell wider: thin walls and legs of tables must not fall between the middles.
     grey[shapely.contains_xy(occupied.buffer(CELL_M / 2), *middles)] = OCCUPIED
     text = (
-        "image: map.pgm\nmode: trinary\n"
+        f"image: {name}.pgm\nmode: trinary\n"
         f"resolution: {CELL_M}\norigin: [{low[0] * CELL_M:.3f}, {low[1] * CELL_M:.3f}, 0.0]\n"
         "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
     )
-    return {"map.pgm": f"P5\n{columns} {rows}\n255\n".encode() + grey.tobytes(), "map.yaml": text.encode()}
+    return {f"{name}.pgm": f"P5\n{columns} {rows}\n255\n".encode() + grey.tobytes(), f"{name}.yaml": text.encode()}
 
 
 def rings(polygon: Polygon) -> dict[str, list]:

@@ -90,7 +90,7 @@ def write_robot(gathered: ExportScene, path: Path, progress: Progress = SILENT) 
         yield from mesh_files(gathered, FOLDER, progress.part(0.2, 0.7))
         yield from collider_files(physical, FOLDER)
         yield from ((name, text.encode()) for name, text in texts.items())
-        yield from map_files(floor, occupied, radius).items() if not floor.is_empty else ()
+        yield from map_files(floor, occupied).items() if not floor.is_empty else ()
         yield from layer_files(gathered, "room.usdc", f"{FOLDER}/usd", progress.part(0.7, 1.0))
 
     write_package(path, "README.md", entries())

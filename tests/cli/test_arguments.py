@@ -2,12 +2,14 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
 import signal
 import time
 from pathlib import Path
 
 import pytest
 
+from diorama_app.cli import command_parser
 from diorama_app.cli.arguments import (
     command,
     field_of_view,
@@ -115,3 +117,35 @@ def test_ctrl_c_stops_at_the_next_check_and_a_second_one_at_once() -> None:
     with pytest.raises(KeyboardInterrupt):
         interrupted(2)
     assert signal.getsignal(signal.SIGINT) is before
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "serve room --host 127.0.0.1 --port 8080 --projects rooms --no-open --low-graphics --token T",
+        "build a.jpg -o room --depth d.png --fov 60 --boxes b.json --masks m.png --profile embedded --arrangements 3",
+        "build a.jpg -o room --intrinsics 500,500,320,240 --library built-in --seed 0 --explain why.json --flat",
+        "build a.jpg -o room --detector boxes.onnx --depth-network depth.onnx",
+        "build photos --out rooms --workers 2 --ray auto",
+        "optimise room --recipe all-in-one --json",
+        "text 'a reading corner' -o room",
+        *(f"export room --format {f} -o room.x" for f in ("glb", "usda", "csv", "occupancy", "robot", "game")),
+        "import room.glb -o room",
+        "picture room -o room.png --view orbit:30 --size 640x480",
+        "library add models --name mine --ray auto",
+        "library search 'oak chair' --image chair.jpg -k 10",
+        *(f"library {words}" for words in ("build", "list", "info ID", "sheet")),
+        *(f"models {words}" for words in ("list", "verify", "check", "path", "pull micro", "pull paper")),
+        "edit room 'make all chairs wooden' --yes",
+        "api --port 8000",
+        "bench system --scenes 4 --seed 1 --json rows.json --substitute room,height",
+        "bench photos a.json --photos pictures --unnamed --perturbed --folds 5 --json rows.json",
+        "bench questions --scenes 4",
+        "review room --json --answer chair.front=180",
+        "mcp room --http 8000",
+        *(f"project {words}" for words in ("list", "copy room", "zip room", "unzip room.zip")),
+        "doctor",
+    ],
+)
+def test_the_commands_that_others_rely_on_are_understood(line: str) -> None:
+    command_parser().parse_args(shlex.split(line))

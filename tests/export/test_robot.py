@@ -12,7 +12,7 @@ import pytest
 from shapely.geometry import Point, Polygon, box
 
 from diorama_core.export.colliders import physical_scene, world_parts
-from diorama_core.export.navigation import standing_place, walkable
+from diorama_core.export.navigation import standing_place, walkable, write_occupancy
 from diorama_core.export.regions import MIN_SIDE_M
 from diorama_core.export.robot import handle_of, write_robot
 from tests.export.scenes import gathered
@@ -92,6 +92,12 @@ def test_the_map_is_read_where_things_stand(pack: Path) -> None:
     assert at(*scene.object("dresser_1").T_world[:2, 3]) == 0
     assert at(*scene.object("rug_1").T_world[:2, 3]) == 254  # driven over
     assert at(left + 0.01, bottom + 0.01) == 205
+
+
+def test_the_map_alone_is_that_of_the_pack(pack: Path, tmp_path: Path) -> None:
+    write_occupancy(gathered("fittings", joints=True), tmp_path / "flat.yaml")
+    assert (tmp_path / "flat.pgm").read_bytes() == (pack / "map.pgm").read_bytes()
+    assert (tmp_path / "flat.yaml").read_text() == (pack / "map.yaml").read_text().replace("map.pgm", "flat.pgm")
 
 
 def test_a_disc_has_room_where_it_may_be_and_reaches_the_desk(pack: Path) -> None:

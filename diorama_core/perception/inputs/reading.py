@@ -49,6 +49,7 @@ def read_inputs(
     boxes: Path | bytes | Source | None = None,
     masks: Path | bytes | Source | None = None,
     half_turn: bool = False,
+    flat: bool = False,
     max_side: int | None = None,
     sphere: bool = False,
 ) -> ReadInputs:
@@ -68,6 +69,7 @@ def read_inputs(
         boxes: In any form of `BOX_FORMS`, by default in pixels of the upright original photo.
         masks: In any form of `MASK_FORMS`: a picture with one colour or one id per instance, a folder, an array.
         half_turn: Whether the photo and all that belongs to it are upside down, and are turned by 180 degrees.
+        flat: Whether the photo shows one direction although it looks like a panorama.
         max_side: Larger photos are reduced so that the longer side has this many pixels; by default `MAX_SIDE_PX`, or
             `MAX_SPHERE_PX` of a 360 degree photo.
         sphere: Whether the photo is to be a 360 degree photo (equirectangular).
@@ -80,7 +82,7 @@ def read_inputs(
         InputError: one line saying what cannot be used, where, and what to do.
     """
     side = max_side or (MAX_SPHERE_PX if sphere else MAX_SIDE_PX)
-    decoded = read_photo(read_source(image, "photo", name), side, sphere=sphere)
+    decoded = read_photo(read_source(image, "photo", name), side, sphere=sphere, flat=flat)
     photo, warnings = decoded.photo, list(decoded.notes)
     unturned, camera = decoded, _read_intrinsics(decoded, intrinsics, fov_deg)
     if half_turn:

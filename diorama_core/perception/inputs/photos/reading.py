@@ -50,13 +50,14 @@ class DecodedPhoto:
     notes: tuple[str, ...] = ()
 
 
-def read_photo(source: Source, max_side: int, *, sphere: bool = False) -> DecodedPhoto:
+def read_photo(source: Source, max_side: int, *, sphere: bool = False, flat: bool = False) -> DecodedPhoto:
     """The upright photo, reduced to `max_side`.
 
     Args:
         source: its file.
         max_side: pixels of the longer side, at most.
         sphere: whether it is to be a 360 degree photo, whose borders are no frame.
+        flat: whether it shows one direction although it looks like a panorama.
 
     Raises:
         InputError: when it cannot be used; the message says why.
@@ -78,7 +79,7 @@ def read_photo(source: Source, max_side: int, *, sphere: bool = False) -> Decode
     notes += more
     if sphere:
         check_sphere(source.name, upright)
-    else:
+    elif not flat:
         notes += check_perspective(source.name, upright, exif, has_focal=focal is not None)
     brighter, more = dark_colours(upright, source)
     rgb, bits = _to_rgb(_coarser(brighter, max_side), source.name)
@@ -299,7 +300,7 @@ def check_perspective(name: str, picture: Image.Image, exif: Mapping[int, Any], 
     if projection == "equirectangular" or (projection is None and _is_sphere(picture)):
         raise SphericalPhotoError(
             f"{name}: this is a 360 degree photo (equirectangular), not a perspective one; upload it "
-            f"alone in the editor, give it to 'diorama build', or {crop}"
+            f"alone in the editor, give it to 'diorama build' (--flat if it is none), or {crop}"
         )
     if projection not in (None, "perspective", "rectilinear") or exif.get(_CUSTOM_RENDERED) == _PANORAMA:
         raise InputError(

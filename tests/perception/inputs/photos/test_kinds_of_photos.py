@@ -169,6 +169,7 @@ def test_a_sphere_is_read_whole_where_one_is_asked_for() -> None:
     assert read_inputs(encoded(black), sphere=True).inputs.photo.original_size == (400, 200)
     with pytest.raises(SphericalPhotoError):
         read_inputs(encoded(black))
+    assert read_inputs(encoded(panorama(400, 200)), flat=True).inputs.photo.original_size == (400, 200)
     for no_sphere, why in (
         (Image.fromarray(NOISE), "2 : 1"),
         (panorama(400, 200).crop((0, 0, 200, 100)), "do not meet"),
