@@ -81,7 +81,7 @@ def _drawn_up(cuboid: Cuboid, level: float) -> Cuboid:
 def mounted_on_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
     """Objects with those mounted on a wall moved to touch it.
 
-    A cuboid is scaled about the camera, so that it looks the same in the photo, but never below the floor.
+    A cuboid is scaled about the camera, so that it looks the same in the photo, and ends at the floor.
     """
     planes = {p.id: p for p in room.architecture.by_role("wall")}
     wall_of = {s.child: planes[s.parent] for s in room.supports if s.relation == "mounted on" and s.parent in planes}
@@ -101,10 +101,14 @@ def _brought_to(cuboid: Cuboid, wall: Plane, camera: Camera, most: float) -> Cub
     scale = (wall.offset - float(eye @ wall.normal)) / nearest
     if not 1.0 / most <= scale <= most:
         return cuboid
-    drop = float(eye[2] - cuboid.corners_world[:, 2].min())
-    above_floor = max(1.0, float(eye[2]) / drop) if drop > 1e-6 else MAX_SCALE
-    scale = min(max(scale, MIN_SCALE), MAX_SCALE, above_floor)
-    return replace(cuboid, centre=eye + scale * (cuboid.centre - eye), size_m=scale * cuboid.size_m)
+    brought = _nearer(cuboid, min(max(scale, MIN_SCALE), MAX_SCALE), camera)
+    # What stood on the floor still does, as doors do: furniture may hide their feet, but not their sides and tops.
+    lowest = min(_base(cuboid), _base(brought))
+    return _down_to(brought, 0.0) if lowest < REACH_M else brought
+
+
+def _base(cuboid: Cuboid) -> float:
+    return float(cuboid.corners_world[:, 2].min())
 
 
 MIN_CONFIDENCE = 0.3
@@ -127,7 +131,7 @@ def drawn_before_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> 
     for unseen in [c for c in geometry.cuboids if not c.foot_seen and c.object_id in standing]:
         factor = nearer_by(unseen, walls, geometry.camera)
         if factor < 1.0:
-            cuboids[unseen.object_id] = _down_to(_nearer(unseen, factor, geometry.camera), unseen)
+            cuboids[unseen.object_id] = _down_to(_nearer(unseen, factor, geometry.camera), _base(unseen))
             for child in _carried_by(unseen.object_id, room.supports):
                 if child in cuboids:
                     cuboids[child] = _nearer(cuboids[child], factor, geometry.camera)
@@ -156,9 +160,9 @@ def _nearer(cuboid: Cuboid, factor: float, camera: Camera) -> Cuboid:
     return replace(cuboid, centre=eye + factor * (cuboid.centre - eye), size_m=factor * cuboid.size_m)
 
 
-def _down_to(cuboid: Cuboid, before: Cuboid) -> Cuboid:
-    """The cuboid extended down to where it stood before."""
-    base, top = before.centre[2] - before.size_m[2] / 2, cuboid.centre[2] + cuboid.size_m[2] / 2
+def _down_to(cuboid: Cuboid, base_m: float) -> Cuboid:
+    """The cuboid with its top where it is and its base at a height."""
+    top = cuboid.centre[2] + cuboid.size_m[2] / 2
     centre, size = cuboid.centre.copy(), cuboid.size_m.copy()
-    centre[2], size[2] = (base + top) / 2, top - base
+    centre[2], size[2] = (base_m + top) / 2, top - base_m
     return replace(cuboid, centre=centre, size_m=size)

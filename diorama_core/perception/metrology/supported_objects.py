@@ -19,7 +19,7 @@ from diorama_core.library.taxonomy import (
 )
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode, modes_held, standing_costs
-from diorama_core.perception.metrology.problem import Cuboids, Problems
+from diorama_core.perception.metrology.problem import UNTOLD, Cuboids, Problems
 from diorama_core.perception.metrology.rows import row
 from diorama_core.perception.metrology.settings import SETTINGS, MetrologySettings, PlacementSettings
 
@@ -203,6 +203,9 @@ def place_on_wall(
 ) -> list[Problems]:
     """Rows for an object on the wall ahead, on the left and on the right.
 
+    A door stands on the floor, so that its foot tells where its wall is; of other things their walls tell how far they
+    are.
+
     Args:
         observations: of all objects.
         index: of the object.
@@ -230,9 +233,9 @@ def place_on_wall(
             top_m=settings.placement.wall_top_m,
             top_sigma_m=settings.placement.wall_top_sigma_m,
             wall_m=wall,
-            wall_sigma=3.0 * sigma if door else sigma,
+            wall_sigma=UNTOLD if door else sigma,
             footprint=room.footprint,
-            footprint_sigma_m=0.4,
+            footprint_sigma_m=UNTOLD if door else 0.4,
             extra=mode.cost + side_cost + cost,
             settings=settings.fit,
         )
