@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.architecture.single_view.settings import SETTINGS, RoomCueSettings
 from diorama_core.artefacts import SURE_MASK, Cuboid, DetectedObject
+from diorama_core.geometry.openings import DOOR
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.library.taxonomy import CATEGORIES, PORTABLE, UNKNOWN, category, having
 from diorama_core.scene.types import Camera
@@ -25,8 +26,8 @@ PRIOR_MEDIAN_M = np.array([4.2, 3.5, 2.6])
 """Width, depth from the camera, ceiling."""
 PRIOR_LOG_SIGMA = np.array([0.45, 0.5, 0.18])
 
-BACKED = having("often_at_wall") - having("seat")
-"""What usually has a wall behind it."""
+BACKED = (having("often_at_wall") - having("seat")) | {DOOR}
+"""What usually has a wall behind it, or around it."""
 _WALL_CATEGORIES = frozenset(c.name for c in CATEGORIES if c.mount in ("wall", "ceiling"))
 
 
