@@ -27,6 +27,7 @@ class RoomCueSettings:
     """What an object says about the walls whose distance only its size tells, against one that is seen to stand
     there."""
     edge_weight: float = 1.0
+    object_weight: float = 0.5
     prior_weight: float = 0.1
 
 
@@ -49,6 +50,8 @@ class RoomSearchSettings:
     back_cap: float = 2.0
     """Weight of a sure object's back against all that the picture shows of the room; how well its place is known; and
     the squared sigmas beyond which it says no more: it may stand elsewhere."""
+    unsure_share: float = 0.2
+    """Share of its distance by which an object may be nearer than its cuboid."""
     corner_cost: float = 0.05
     protruding_cost: float = 0.2
     jump_cost: float = 0.3

@@ -1,8 +1,8 @@
 """The best chain of walls for a photo, by dynamic programming over the headings of the level view.
 
 Candidates are upright planes of a few directions at many distances. In a heading each costs what it makes of the
-column: floor-coloured wall, lines that stand out of their surface, missing edges at its foot and top, a place apart
-from the backs of what stands at walls. A transition between walls costs a corner, less at a visible vertical edge.
+column: floor-coloured wall, lines that stand out of their surface, missing edges at its foot and top, objects that
+would stick through it. A transition between walls costs a corner, less at a visible vertical edge.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class ChainScorer:
             self._edge(walls, near, 0.0)[0] + self._edge(walls, near, ceiling_m)[0]
         )
         total -= self.settings.cues.edge_weight * self._skirting(walls, near)
-        total += self._backs(near) + self._usual(walls, near)
+        total += self._objects(near) + self._backs(near) + self._usual(walls, near)
         return np.where(met & (near > self.settings.search.nearest_m * 0.5), total, 1e3)
 
     def reach(self, walls: PhotoWalls) -> Float[np.ndarray, "w m"]:
@@ -178,6 +178,30 @@ class ChainScorer:
         return np.maximum(
             np.max([self._edge(walls, near, height)[0] for height in self.settings.search.skirtings_m], axis=0), 0.0
         )
+
+    def _objects(self, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
+        """Objects that would stick through a wall, in the headings of their corners."""
+        e = self.cues
+        total = np.zeros(near.shape)
+        if len(e.object_low) == 0:
+            return total
+        weights = e.object_weights / e.object_weights.sum()
+        eye = e.camera.position[:2]
+        edges = self.view.edges_rad
+        for low, high, weight in zip(e.object_low, e.object_high, weights, strict=True):
+            corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])]) - eye
+            for x, y in corners:
+                column = int(np.searchsorted(edges, np.arctan2(x, y))) - 1
+                if 0 <= column < near.shape[1]:
+                    away = np.hypot(x, y)
+                    out = away * (1.0 - self.settings.search.unsure_share) - near[:, column]
+                    total[:, column] += (
+                        self.settings.cues.object_weight
+                        * weight
+                        / 4.0
+                        * np.clip(out / self.settings.search.protrusion_m, 0.0, 2.0)
+                    )
+        return total
 
     def _backs(self, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
         """Beds, storage and stoves stand at walls: a wall is where the sight through one leaves it."""

@@ -78,6 +78,18 @@ def test_the_true_wall_costs_least_where_it_is_seen() -> None:
     assert offsets[costs[:, on_far].sum(axis=1).argmin()] == -4.0
 
 
+def test_objects_push_walls_away_in_the_headings_of_their_corners() -> None:
+    # Straight ahead at 3 m, thin, so that all corners share few headings.
+    item = {"object_low": np.array([[-0.01, 2.99, 0.0]]), "object_high": np.array([[0.01, 3.01, 1.0]])}
+    with_item = blank(**item, object_weights=np.array([1.0]))
+    near, far = walls(((0.0, -1.0), -1.5)), walls(FAR)
+    extra = [with_item.costs(w, 2.6) - blank().costs(w, 2.6) for w in (near, far)]
+    # At most twice the scale, for each of four corners a quarter of the weight.
+    assert extra[0].sum() == pytest.approx(2.0 * SETTINGS.cues.object_weight, rel=1e-6)
+    assert np.flatnonzero(extra[0][0]).size <= 4
+    np.testing.assert_allclose(extra[1], 0.0, atol=1e-12)
+
+
 def test_sights_leave_a_footprint_where_it_ends_behind() -> None:
     across = np.array([[0.0, 1.0], [1.0, 0.0], [np.sqrt(0.5), np.sqrt(0.5)]])
     found = leaves(np.zeros(2), across, np.array([-0.5, 2.0]), np.array([3.0, 3.5]))
