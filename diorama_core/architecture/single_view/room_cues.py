@@ -12,7 +12,7 @@ from diorama_core.architecture.single_view.settings import SETTINGS, RoomCueSett
 from diorama_core.artefacts import SURE_MASK, Cuboid, DetectedObject
 from diorama_core.geometry.openings import DOOR
 from diorama_core.geometry.segments import line_segments_px
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category, having
+from diorama_core.library.taxonomy import CATEGORIES, PORTABLE, UNKNOWN, category, having
 from diorama_core.scene.types import Camera
 
 AXIS_TOLERANCE_RAD = np.deg2rad(4.0)
@@ -53,6 +53,9 @@ class RoomCues:
     """Least corner of each standing object's cuboid along the room's axes."""
     object_high: Float[np.ndarray, "k 3"]
     object_weights: Float[np.ndarray, "k"]
+    object_portable: Bool[np.ndarray, "k"]
+    """Whether people put such objects on furniture, too: then they are nearer than where their line of sight meets the
+    floor."""
     backed_low: Float[np.ndarray, "b 3"]
     """Least corner of the cuboid of each object that has a wall behind it, or is in one."""
     backed_high: Float[np.ndarray, "b 3"]
@@ -126,6 +129,7 @@ def gather_room_cues(
         object_weights=np.array(
             [max(c.confidence, 0.1) * (1.0 if c.foot_seen else settings.unseen_foot) for c in solid]
         ),
+        object_portable=np.array([_is_portable(c, objects) for c in solid], dtype=bool),
         backed_low=backs.min(axis=1),
         backed_high=backs.max(axis=1),
         backed_weights=np.array([c.confidence for c in backed]),
@@ -169,6 +173,11 @@ def _slants(
 
 def _on_wall(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:
     return _category_of(cuboid, objects) in _WALL_CATEGORIES
+
+
+def _is_portable(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:
+    name = _category_of(cuboid, objects)
+    return name in PORTABLE or category(name).mount == "surface"
 
 
 def _category_of(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> str:

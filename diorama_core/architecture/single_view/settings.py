@@ -77,6 +77,11 @@ class RoomSearchSettings:
     floor_confidence: float = 0.6
     lines: int = 14
     """Number of longest lines per axis that are tried as feet of walls."""
+    max_push_m: float = 2.0
+    """Walls give way to objects by at most this: what is farther out is a mistake."""
+    push_weight: float = 3.0
+    enough_out_m: float = 0.5
+    """How much a sure wall's place counts beside a sure object's; and the protrusion beyond which more says no more."""
     clearance_m: float = 0.02
     measured: float = 0.95
     """A wall candidate's confidence is this less what is seen through it."""

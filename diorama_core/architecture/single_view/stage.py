@@ -122,25 +122,103 @@ def _distances_of_lines(
 def _pieces(
     chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"], settings: RoomSearchSettings
 ) -> tuple[WallPiece, ...]:
-    """The chain's walls as pieces that meet where their corners are about where the one ends and the other begins."""
+    """The chain's walls as pieces that meet, with room for the objects that stand before them."""
+    view = scorer.view
     eye = scorer.cues.camera.position[:2]
-    ends = scorer.view.edges_rad[chain.borders]
-    unseen = np.zeros(0, dtype=bool)
+    ends = view.edges_rad[chain.borders]
+    walls = _with_room(chain, scorer, sure, settings)
     runs = [
-        Run(
-            WallCandidate(normal, float(offset), unseen, settings.measured - float(support), 1.0),
-            float(first),
-            float(last),
-        )
-        for normal, offset, support, first, last in zip(
-            chain.walls.normals, chain.walls.offsets, sure, ends, ends[1:], strict=False
-        )
+        Run(_as_candidate(walls, k, float(sure[k]), settings=settings), float(ends[k]), float(ends[k + 1]))
+        for k in range(len(chain.walls))
     ]
     for k in range(len(runs) - 1):
         corner = meeting_point(runs[k].wall, runs[k + 1].wall)
-        if corner is not None and abs((at := float(heading(corner, eye))) - ends[k + 1]) <= CORNER_SLACK_RAD:
-            runs[k], runs[k + 1] = replace(runs[k], last=at), replace(runs[k + 1], first=at)
-    return chained(runs, (float(ends[0]), float(ends[-1])), eye)
+        if corner is None or not _joined(chain, k, ends, eye, settings):
+            continue
+        at = float(heading(corner, eye))
+        runs[k], runs[k + 1] = replace(runs[k], last=at), replace(runs[k + 1], first=at)
+    return chained(runs, (float(view.edges_rad[0]), float(view.edges_rad[-1])), eye)
+
+
+def _as_candidate(walls: PhotoWalls, k: int, sure: float = 0.0, *, settings: RoomSearchSettings) -> WallCandidate:
+    return WallCandidate(
+        walls.normals[k], float(walls.offsets[k]), np.zeros(0, dtype=bool), settings.measured - sure, 1.0
+    )
+
+
+def _with_room(
+    chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"], settings: RoomSearchSettings
+) -> PhotoWalls:
+    """The chain's walls, moved outward where the objects that protrude through them weigh more than what was seen.
+
+    A wall that moves alone takes its corners out of the line of sight in which they were seen; moved as far in
+    proportion, its neighbours retain them. That is done unless it contradicts the photo by more than a corner is worth.
+    """
+    ends, eye = scorer.view.edges_rad[chain.borders], scorer.cues.camera.position[:2]
+    out = [
+        _push(
+            _as_candidate(chain.walls, k, settings=settings),
+            float(ends[k]),
+            float(ends[k + 1]),
+            scorer.cues,
+            float(sure[k]),
+            settings,
+        )
+        for k in range(len(chain.walls))
+    ]
+    apart = replace(chain.walls, offsets=chain.walls.offsets - np.array(out))
+    if not any(out):
+        return apart
+    at_eye = chain.walls.normals @ eye
+    farther = (apart.offsets - at_eye) / (chain.walls.offsets - at_eye)
+    joined = [_joined(chain, k, ends, eye, settings) for k in range(len(chain.walls) - 1)]
+    groups = np.cumsum([0, *(not one for one in joined)])
+    most = np.array([farther[groups == group].max() for group in groups])
+    together = replace(chain.walls, offsets=at_eye + (chain.walls.offsets - at_eye) * most)
+    cost = [best_chain(scorer, walls, chain.ceiling_m).cost for walls in (apart, together)]
+    return together if cost[1] < cost[0] + settings.corner_cost else apart
+
+
+def _joined(
+    chain: Chain, k: int, ends: Float[np.ndarray, "r1"], eye: Float[np.ndarray, "2"], settings: RoomSearchSettings
+) -> bool:
+    """Whether a wall and the next one meet where the one ends."""
+    corner = meeting_point(
+        _as_candidate(chain.walls, k, settings=settings), _as_candidate(chain.walls, k + 1, settings=settings)
+    )
+    return corner is not None and bool(abs(heading(corner, eye) - ends[k + 1]) <= CORNER_SLACK_RAD)
+
+
+def _push(
+    wall: WallCandidate,
+    first: float,
+    last: float,
+    cues: RoomCues,
+    sure: float,
+    settings: RoomSearchSettings = SETTINGS.search,
+) -> float:
+    """How far, in metres, a wall gives way to the objects within its headings.
+
+    Every object pulls by its confidence as far as it protrudes, and by the share of it that does, since where it ends
+    behind is a guess; the wall resists by how sure it is. Either may be wholly wrong, so that much farther says little
+    more. What could stand on furniture and would be wholly behind the wall is not where it seems to be.
+    """
+    eye = cues.camera.position[:2]
+    outs, weights = [0.0], [0.0]
+    known = zip(cues.object_low, cues.object_high, cues.object_weights, cues.object_portable, strict=True)
+    for low, high, weight, portable in known:
+        corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])])
+        towards = heading(corners, eye)
+        through = wall.offset - corners @ wall.normal
+        beside = towards.max() < first or towards.min() > last or np.ptp(towards) > np.pi
+        elsewhere = portable and through.min() > 0.0
+        if not beside and not elsewhere and 0.0 < through.max() < settings.max_push_m:
+            outs.append(float(through.max()) + settings.clearance_m)
+            weights.append(float(weight * min(1.0, through.max() / np.ptp(through))))
+    out = np.array(outs)
+    left = np.clip(out - out[:, None], 0.0, settings.enough_out_m)
+    resistance = settings.push_weight * sure**2 * settings.enough_out_m * np.log1p(out / settings.enough_out_m)
+    return outs[int(np.argmin(left @ np.array(weights) + resistance))]
 
 
 def _highest(cues: RoomCues, settings: RoomSearchSettings) -> float:

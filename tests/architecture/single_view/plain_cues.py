@@ -29,6 +29,7 @@ def cues(**given) -> RoomCues:
         "backed_weights": np.zeros(0),
         "hung_top_m": 0.0,
     }
+    neutral["object_portable"] = np.zeros(len(given.get("object_weights", ())), dtype=bool)
     return RoomCues(**(neutral | given))
 
 
