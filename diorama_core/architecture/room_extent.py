@@ -28,6 +28,8 @@ class RoomExtentSettings:
 
     margin_m: float = 0.01
     """Left around what stands on the floor."""
+    hold: float = 0.5
+    """How much a wall's own place counts beside that of an object against it."""
     foot_hidden: float = 0.3
     """How much less certain the place of an object is whose foot the photo does not show."""
     longest_cord: float = 1.3
@@ -166,7 +168,7 @@ def _at_backs(scene: Scene, feet_seen: Collection[str] | None, objects_measured:
         backs, certainty = _backs(against, wall, feet_seen)
         before, before_certainty = _backs(others, wall, feet_seen)
         tried = np.concatenate([[0.0], backs, before]) if objects_measured else np.concatenate([[0.0], backs])
-        inward = _agreed(tried, wall.confidence, backs, certainty, before, before_certainty)
+        inward = _agreed(tried, backs, certainty, before, before_certainty)
         if abs(inward) < SETTINGS.margin_m:
             continue
         try:
@@ -203,7 +205,6 @@ def _back(item: SceneObject, wall: Plane) -> float:
 
 def _agreed(
     tried: Float[np.ndarray, " t"],
-    hold: float,
     backs: Float[np.ndarray, " a"],
     certainty: Float[np.ndarray, " a"],
     others: Float[np.ndarray, " b"],
@@ -212,7 +213,7 @@ def _agreed(
     """How far inward, of what is tried, a wall agrees best with the backs of what stands against it and before it."""
     apart = np.abs(tried[:, None] - backs) @ certainty
     past = np.maximum(tried[:, None] - others, 0.0) @ others_certainty
-    return float(tried[np.argmin(apart + past + hold * np.abs(tried))])
+    return float(tried[np.argmin(apart + past + SETTINGS.hold * np.abs(tried))])
 
 
 def _doubted(scene: Scene, standing: Sequence[SceneObject]) -> Scene:
