@@ -101,10 +101,14 @@ def _brought_to(cuboid: Cuboid, wall: Plane, camera: Camera, most: float) -> Cub
     scale = (wall.offset - float(eye @ wall.normal)) / nearest
     if not 1.0 / most <= scale <= most:
         return cuboid
-    brought = _nearer(cuboid, min(max(scale, MIN_SCALE), MAX_SCALE), camera)
-    # What stood on the floor still does, as doors do: furniture may hide their feet, but not their sides and tops.
-    lowest = min(_base(cuboid), _base(brought))
-    return _down_to(brought, 0.0) if lowest < REACH_M else brought
+    scale = min(max(scale, MIN_SCALE), MAX_SCALE)
+    base, height = _base(cuboid), float(eye[2])
+    stands = base < REACH_M
+    if not stands or base + float(cuboid.size_m[2]) < height:
+        scale = min(scale, max(1.0, height / max(height - base, 1e-6)))
+    brought = _nearer(cuboid, scale, camera)
+    # Furniture may hide the foot of a door, but not its sides and its top, which is above the camera.
+    return _down_to(brought, 0.0) if stands else brought
 
 
 def _base(cuboid: Cuboid) -> float:

@@ -60,6 +60,14 @@ def test_a_door_stays_on_the_floor():
     assert hung(door).corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("base", [0.0, 0.05])
+def test_a_low_thing_is_not_brought_below_the_floor(base):
+    radiator = cuboid("radiator", (0.3, 3.0, base), (0.1, 1.0, 0.3), yaw_deg=-90)
+    found = hung(radiator)
+    assert found.corners_world[:, 2].min() > -1e-9
+    assert found.size_m[2] >= radiator.size_m[2] - 1e-9
+
+
 def test_standing_objects_stay():
     chair = cuboid("chair", (0.3, 3.0, 0.0), (0.5, 0.5, 0.9))
     assert hung(chair, "placed on", "floor") == chair
