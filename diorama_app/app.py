@@ -185,7 +185,7 @@ class Editor:
             PlacingGhost(gui, client),
             Plan(gui, client),
         ]
-        client.open_tab = Tabs(gui, (LEFT_TABS, RIGHT_TABS)).open
+        client.open_tab = Tabs(gui, LEFT_TABS + RIGHT_TABS).open
         client.go_to = Address(gui).go_to
         left = gui.add_tab_group()
         scene, from_photo, arrange, projects = (left.add_tab(_(name)) for name in LEFT_TABS)

@@ -28,11 +28,11 @@ class Address:
 
 
 STORED_AS = "diorama-tabs"
-TRIES = 40
+TRIES = 200
 """Number of attempts to find the tabs while the page loads, 50 ms apart."""
 
 _KEEPER = """
-const groups = %s, key = %s;
+const names = %s, key = %s;
 const tabs = () => [...document.querySelectorAll('[role=tab]')];
 const named = (tab) => tab.textContent.trim();
 const enter = (tab) => {
@@ -42,61 +42,69 @@ const enter = (tab) => {
 const read = () => { try { return JSON.parse(localStorage.getItem(key)) || []; } catch { return []; } };
 const note = () => {
   const open = tabs().filter((t) => t.getAttribute('aria-selected') === 'true').map(named);
-  const remembered = groups.map((names) => names.find((name) => open.includes(name)) || names[0]);
-  try { localStorage.setItem(key, JSON.stringify(remembered)); } catch { window.__dioTabs = 'not remembered'; }
+  try { localStorage.setItem(key, JSON.stringify(open)); } catch { window.__dioTabs = 'not remembered'; }
 };
 const recall = (left) => {
-  const there = tabs(), remembered = read();
-  if (groups.flat().some((name) => !there.some((t) => named(t) === name))) {
+  if (!window.__dioRecalls) return;
+  const there = tabs();
+  if (names.some((name) => !there.some((t) => named(t) === name))) {
     if (left) setTimeout(() => recall(left - 1), 50);
     return;
   }
+  const lists = new Set(there.map((t) => t.closest('[role=tablist]')));
+  const remembered = lists.size > 1 ? read() : read().slice(0, 1);
   for (const tab of there)
     if (remembered.includes(named(tab)) && tab.getAttribute('aria-selected') !== 'true') enter(tab);
-  if (window.__dioTabWanted) enter(there.find((t) => named(t) === window.__dioTabWanted));
+  const wanted = there.find((t) => named(t) === window.__dioTabWanted);
+  if (wanted) enter(wanted);
 };
-delete window.__dioTabWanted;
-window.__dioOpenTab = (name, left = 40) => {
+window.__dioRecalls = true;
+window.__dioOpenTab = (name, number) => {
+  if (window.__dioTabsAsked === number) return;
+  window.__dioTabsAsked = number;
+  const again = (left) => {
+    const tab = tabs().find((t) => named(t) === name);
+    if (tab && tab.getAttribute('aria-selected') !== 'true') enter(tab);
+    if (left) setTimeout(() => window.__dioTabWanted === name && again(left - 1), 50);
+    else { delete window.__dioTabWanted; note(); }
+  };
   window.__dioTabWanted = name;
-  const tab = tabs().find((t) => named(t) === name);
-  if (tab && tab.getAttribute('aria-selected') !== 'true') enter(tab);
-  if (left) setTimeout(() => window.__dioTabWanted === name && window.__dioOpenTab(name, left - 1), 50);
-  else if (window.__dioTabWanted === name) delete window.__dioTabWanted;
+  again(40);
 };
 recall(%d);
 if (!window.__dioTabs) {
   window.__dioTabs = 'remembered';
   for (const kind of ['pointerdown', 'keydown'])
     document.addEventListener(kind, (e) => {
-      if (e.isTrusted && e.target.closest('[role=tab]')) delete window.__dioTabWanted;
+      if (e.isTrusted && e.target.closest('[role=tab]')) { delete window.__dioTabWanted; window.__dioRecalls = false; }
     }, true);
   for (const kind of ['pointerup', 'keyup'])
     document.addEventListener(kind, () => setTimeout(note, 200), true);
 }
 """
 """viser's tabs answer to a press of the mouse, not to a click; a key does the same. Those of a phone answer to a click
-only. A tab that is opened is opened again where others are made meanwhile (a phone's), until a person chooses one."""
+only. A tab that is opened is opened again where others are made meanwhile (a phone's), until a person chooses one. Of
+two tabs that were open side by side a phone, with one list, opens the left one."""
 
 
 class Tabs:
     """The tabs of one page."""
 
-    def __init__(self, gui: viser.GuiApi, groups: Sequence[Sequence[str]]) -> None:
+    def __init__(self, gui: viser.GuiApi, tabs: Sequence[str]) -> None:
         """Open the tabs that were open here the last time, and note which are from now on.
 
         Args:
             gui: the page.
-            groups: names of the tabs that stand side by side.
+            tabs: names of all tabs, from left to right.
         """
-        names = json.dumps([list(map(_, group)) for group in groups])
-        gui.add_html(run_once(_KEEPER % (names, json.dumps(STORED_AS), TRIES)))
+        gui.add_html(run_once(_KEEPER % (json.dumps(list(map(_, tabs))), json.dumps(STORED_AS), TRIES)))
         self._opener = gui.add_html("")
         self._asked = 0
 
     def open(self, name: str) -> None:
         """Bring a tab to the front."""
         self._asked += 1
-        opening = f"window.__dioOpenTab && window.__dioOpenTab({json.dumps(_(name))}); /* {self._asked} */"
+        opening = f"window.__dioOpenTab && window.__dioOpenTab({json.dumps(_(name))}, {self._asked});"
         self._opener.content = run_once(opening)
 
 

@@ -146,6 +146,7 @@ def test_rows_that_can_carry_what_is_dragged_are_marked_until_it_is_dropped(edit
     def pulled(object_id: str, onto: str) -> set[str]:
         """The marked rows while one is dragged over another."""
         row, other = (editor.page.locator(f".dio .row[data-{w}]") for w in (f'grab="{object_id}"', f'drop="{onto}"'))
+        editor.settle()  # the list is drawn again after each edit
         editor.pull(_middle(row), _middle(other))
         editor.until(lambda: marked.count() > 0, "places to drop onto are marked")
         return set(marked.evaluate_all("rows => rows.map(r => r.dataset.drop)"))

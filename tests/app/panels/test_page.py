@@ -20,15 +20,15 @@ def test_names_cannot_leave_their_quotes(page: Page) -> None:
     assert '"); alert(' not in page.html
 
 
-def test_the_page_is_told_which_tabs_stand_together(page: Page) -> None:
-    Tabs(page, (("Scene", "Photo"), ("Object",)))
+def test_the_page_is_told_its_tabs(page: Page) -> None:
+    Tabs(page, ("Scene", "Photo", "Object"))
     script = html.unescape(page.html)
-    assert '[["Scene", "Photo"], ["Object"]]' in script
+    assert '["Scene", "Photo", "Object"]' in script
     assert f'"{STORED_AS}"' in script
 
 
 def test_asking_for_the_same_tab_again_runs_again(page: Page) -> None:
-    tabs = Tabs(page, (("Scene", 'It\'s "quoted"'),))
+    tabs = Tabs(page, ("Scene", 'It\'s "quoted"'))
     seen = []
     for _ in range(2):
         tabs.open('It\'s "quoted"')
