@@ -137,7 +137,7 @@ def test_building_is_above_the_fold_on_every_screen(visit, serve, tmp_path) -> N
     editor.upload("Upload a photo", EXAMPLE / "photo.jpg")
     editor.page.wait_for_selector(".dio-canvas-proposal", timeout=60_000)
     for width, height in ((1440, 900), (1280, 720), (390, 844)):
-        editor.page.wait_for_function("!window.__dioTabWanted")  # the tab stays open although nothing asks for it any more
+        editor.page.wait_for_function("!window.__dioTabWanted")  # so that nothing asks for the tab any more
         editor.page.set_viewport_size({"width": width, "height": height})
         if width < height:
             editor.page.wait_for_selector("html.dio-phone")
