@@ -7,11 +7,13 @@ would stick through it. A transition between walls costs a corner, less at a vis
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
+from weakref import WeakKeyDictionary
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from diorama_core.architecture.single_view.level_view import LevelView, projected, response
 from diorama_core.architecture.single_view.room_cues import (
@@ -56,27 +58,58 @@ class Chain:
 
 
 @dataclass(frozen=True, eq=False)
+class _BelowCeiling:
+    """What walls cost in every heading, whatever the ceiling's height."""
+
+    near: Float[np.ndarray, "w m"]
+    """Level distance; 1 where a wall is not met."""
+    met: Bool[np.ndarray, "w m"]
+    floor: Float[np.ndarray, "w m"]
+    """Of the floor before the wall."""
+    upright: Float[np.ndarray, "w m"]
+    """Of the wall as if it went on below the floor."""
+    foot: Float[np.ndarray, "w m"]
+    skirting: Float[np.ndarray, "w m"]
+    others: Float[np.ndarray, "w m"]
+    """Of objects and of unusual places."""
+
+
+@dataclass(frozen=True, eq=False)
 class ChainScorer:
     """Costs of walls in headings, of corners, and of ceilings."""
 
     cues: RoomCues
     view: LevelView
     settings: PhotoRoomSettings = SETTINGS
+    _known: WeakKeyDictionary[PhotoWalls, _BelowCeiling] = field(default_factory=WeakKeyDictionary, init=False)
 
     def costs(self, walls: PhotoWalls, ceiling_m: float) -> Float[np.ndarray, "w m"]:
         """Cost of every wall in every heading."""
-        reach = self.reach(walls)
-        eye = self.cues.camera.position
-        met = np.isfinite(reach)
-        near = np.where(met, reach, 1.0)
-        foot, top = -eye[2] / near, (ceiling_m - eye[2]) / near
-        total = self._surfaces(walls, foot, top)
-        total -= self.settings.cues.edge_weight * (
-            self._edge(walls, near, 0.0)[0] + self._edge(walls, near, ceiling_m)[0]
-        )
-        total -= self.settings.cues.edge_weight * self._skirting(walls, near)
-        total += self._objects(near) + self._backs(near) + self._usual(walls, near)
-        return np.where(met & (near > self.settings.search.nearest_m * 0.5), total, 1e3)
+        low = self._below(walls)
+        total = self._surfaces(walls, low, (ceiling_m - self.cues.camera.position[2]) / low.near)
+        total -= self.settings.cues.edge_weight * (low.foot + self._edge(walls, low.near, ceiling_m)[0])
+        total -= self.settings.cues.edge_weight * low.skirting
+        total += low.others
+        return np.where(low.met & (low.near > self.settings.search.nearest_m * 0.5), total, 1e3)
+
+    def _below(self, walls: PhotoWalls) -> _BelowCeiling:
+        """What of the costs is the same below every ceiling: the same walls are tried below dozens."""
+        if walls not in self._known:
+            reach = self.reach(walls)
+            met = np.isfinite(reach)
+            near = np.where(met, reach, 1.0)
+            rows = self.view.row_of(-self.cues.camera.position[2] / near)
+            level, _, uprights = self._sums
+            self._known[walls] = _BelowCeiling(
+                near,
+                met,
+                _upto(level, rows),
+                _upto_of(uprights, np.minimum(walls.directions, 2), rows),
+                self._edge(walls, near, 0.0)[0],
+                self._skirting(walls, near),
+                self._objects(near) + self._backs(near) + self._usual(walls, near),
+            )
+        return self._known[walls]
 
     def reach(self, walls: PhotoWalls) -> Float[np.ndarray, "w m"]:
         """Level distance of walls in the headings' middles; `inf` where they are not met."""
@@ -94,24 +127,24 @@ class ChainScorer:
             np.inf,
         )
 
-    def _surfaces(
-        self, walls: PhotoWalls, foot: Float[np.ndarray, "w m"], top: Float[np.ndarray, "w m"]
-    ) -> Float[np.ndarray, "w m"]:
-        """Floor, wall and ceiling, each where the candidate puts it, against colours and lines."""
+    @cached_property
+    def _sums(self) -> tuple[Float[np.ndarray, "m k1"], Float[np.ndarray, "m k1"], Float[np.ndarray, "3 m k1"]]:
+        """Costs of floor, ceiling, and walls along x, along y and aslant, summed from the lowest row up."""
         v = self.view
         colour = self.settings.search.region_weight * v.floor_ratio * v.share
-        level = _summed(-0.5 * colour + self.settings.search.line_weight * v.lines[..., 2])
-        overhead = _summed(0.5 * colour + self.settings.search.line_weight * v.lines[..., 2])
-        rows_foot, rows_top = v.row_of(foot), v.row_of(top)
-        total = np.zeros(foot.shape)
-        for direction in np.unique(walls.directions):
-            mine = walls.directions == direction
-            along = v.lines[..., direction] if direction < 2 else v.lines[..., 0] + v.lines[..., 1]
-            upright = _summed(0.5 * colour + self.settings.search.line_weight * along)
-            at_foot, at_top = rows_foot[mine], rows_top[mine]
-            total[mine] = _upto(level, at_foot) + _upto(upright, at_top) - _upto(upright, at_foot)
-            total[mine] += overhead[:, -1] - _upto(overhead, at_top)
-        return total
+        level = self.settings.search.line_weight * v.lines[..., 2]
+        along = (v.lines[..., 0], v.lines[..., 1], v.lines[..., 0] + v.lines[..., 1])
+        uprights = [_summed(0.5 * colour + self.settings.search.line_weight * lines) for lines in along]
+        return _summed(-0.5 * colour + level), _summed(0.5 * colour + level), np.stack(uprights)
+
+    def _surfaces(
+        self, walls: PhotoWalls, low: _BelowCeiling, top: Float[np.ndarray, "w m"]
+    ) -> Float[np.ndarray, "w m"]:
+        """Floor, wall and ceiling, each where the candidate puts it, against colours and lines."""
+        _, overhead, uprights = self._sums
+        rows = self.view.row_of(top)
+        total = low.floor + _upto_of(uprights, np.minimum(walls.directions, 2), rows) - low.upright
+        return np.asarray(total + (overhead[:, -1] - _upto(overhead, rows)))
 
     def support(self, chain: Chain) -> Float[np.ndarray, "r"]:
         """How far each wall of a chain is seen, 0 to 1: foot and top as edges, and colours that change at the foot."""
@@ -339,6 +372,15 @@ def leaves(
 
 def _summed(cells: Float[np.ndarray, "m k"]) -> Float[np.ndarray, "m k1"]:
     return np.concatenate([np.zeros((len(cells), 1)), np.cumsum(cells, axis=1)], axis=1)
+
+
+def _upto_of(
+    summed: Float[np.ndarray, "d m k1"], which: Int[np.ndarray, "w"], rows: Float[np.ndarray, "w m"]
+) -> Float[np.ndarray, "w m"]:
+    """Sums below fractional rows, for each wall of its own table."""
+    below = np.minimum(rows.astype(int), summed.shape[2] - 2)
+    part, table, column = rows - below, which[:, None], np.arange(rows.shape[1])
+    return np.asarray(summed[table, column, below] * (1.0 - part) + summed[table, column, below + 1] * part)
 
 
 def _upto(summed: Float[np.ndarray, "m k1"], rows: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
