@@ -187,6 +187,7 @@ class Editor:
         ]
         client.open_tab = Tabs(gui, LEFT_TABS + RIGHT_TABS).open
         client.go_to = Address(gui).go_to
+        self.views.follow(client)
         left = gui.add_tab_group()
         scene, from_photo, arrange, projects = (left.add_tab(_(name)) for name in LEFT_TABS)
 

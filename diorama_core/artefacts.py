@@ -42,6 +42,8 @@ class Photo(ArrayValue):
     straightened: float | None = field(default=None, metadata={"absent when none": True})
     """The radial coefficient, for half the diagonal as focal length, of the distortion that the file has and that was
     taken out by the photo's own lines."""
+    equirectangular: bool | None = field(default=None, metadata={"absent when none": True})
+    """True for a 360 degree photo, whose columns are azimuths and whose rows are elevations; never False."""
 
     @property
     def width(self) -> int:
@@ -107,6 +109,13 @@ class FurtherPhoto(ArrayValue):
     """In the scene's world; None until the photo has joined."""
     seen: tuple[tuple[str, Box], ...] = ()
     """Objects of the scene by their ids, each with its box in this photo."""
+    T_world_sphere: Float[np.ndarray, "4 4"] | None = field(default=None, metadata={"absent when none": True})
+    """A 360 degree photo has this in place of a camera: its frame (`geometry.sphere`) in the scene's world."""
+
+    @property
+    def is_placed(self) -> bool:
+        """Whether it is known where in the scene it was taken."""
+        return self.camera is not None or self.T_world_sphere is not None
 
 
 @dataclass(frozen=True, eq=False)

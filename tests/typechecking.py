@@ -50,7 +50,9 @@ def install() -> None:
     """Check everything of Diorama that is imported from now on."""
     checks_all = jaxtyping.jaxtyped
 
-    def jaxtyped(*, typechecker: Callable[..., Any]) -> Callable[[Any], Any]:
+    def jaxtyped(*context: str, typechecker: Callable[..., Any] | None = None) -> Any:
+        if context:
+            return checks_all(*context)
         return lambda item: _first_calls_checked(item, checks_all(typechecker=typechecker))
 
     jaxtyping.jaxtyped = jaxtyped  # type: ignore[assignment]  # the hook takes it by this name

@@ -5,12 +5,16 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
+import viser
 
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.strings import _
 from diorama_app.viewport.camera import NARROW_FOV_RAD, bounds, room_view, side_view
 from diorama_core.errors import EditRefused
+
+AWAY_M = 0.3
+"""Distance from where a 360 degree photo was taken beyond which it no longer fits the view."""
 
 
 class Views:
@@ -31,6 +35,13 @@ class Views:
 
     def photo(self, client: Client) -> None:
         """Look through the camera of the chosen photo, the photo behind the model."""
+        further = client.further_photo
+        if further is not None and further.T_world_sphere is not None:
+            self._plain(client)
+            client.view.camera.look_around(further.T_world_sphere[:3, 3])
+            self._show_sphere(client)
+            client.refresh()
+            return
         camera, photo = client.looked_through
         if camera is None and client.further_photo is not None:
             message = _("the camera of {photo} is not known yet; add the photo to the scene first")
@@ -39,12 +50,44 @@ class Views:
             raise EditRefused("this scene has no photo; upload one in the Photo tab")
         self._plain(client)
         low, high = bounds(self._session.scene)
-        far = float(np.linalg.norm(high - low)) + 2.0
+        far = self._far()
         middle = float(np.clip(np.linalg.norm((low + high) / 2 - camera.position), 1.0, far))
         client.view.camera.look_through(camera, middle)
         if photo is not None:
             client.view.photo.show_backdrop(camera, photo.rgb, 2.0 * far)
         client.refresh()
+
+    def follow(self, client: Client) -> None:
+        """Be told when a person turns this browser's view."""
+
+        async def looked(_: viser.CameraHandle) -> None:
+            client.post(lambda: self.turned(client), key="turned")
+
+        client.viser_client.camera.on_update(looked)
+
+    def turned(self, client: Client) -> None:
+        """Who looks around in a 360 degree photo has turned: the photo turns, too."""
+        further = client.further_photo
+        if further is None or further.T_world_sphere is None or not client.view.camera.through_photo:
+            return
+        if np.linalg.norm(client.view.camera.position - further.T_world_sphere[:3, 3]) > AWAY_M:
+            client.view.camera.through_photo = False
+            self._hide_photo(client)
+            return
+        self._show_sphere(client)
+
+    def _show_sphere(self, client: Client) -> None:
+        """The part of the 360 degree photo that is in view, behind the model, and over it as before."""
+        camera, photo = client.looked_through
+        if camera is not None and photo is not None:
+            with client.viser_client.atomic():
+                client.view.photo.show_backdrop(camera, photo.rgb, 2.0 * self._far())
+                client.view.photo.show_overlay(camera, photo.rgb, client.view.photo.opacity)
+
+    def _far(self) -> float:
+        """More than the length of everything in the room."""
+        low, high = bounds(self._session.scene)
+        return float(np.linalg.norm(high - low)) + 2.0
 
     def photo_of(self, client: Client, name: str | None) -> None:
         """Choose a photo (None: the scene's own) and look through its camera."""
@@ -89,6 +132,9 @@ class Views:
     def _plain(self, client: Client) -> None:
         client.plan = False
         client.view.canvas.close()
+        self._hide_photo(client)
+        client.refresh()
+
+    def _hide_photo(self, client: Client) -> None:
         client.view.photo.show_backdrop(None, None, 1.0)
         client.view.photo.show_overlay(None, None, 0.0)
-        client.refresh()

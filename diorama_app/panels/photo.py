@@ -21,7 +21,7 @@ from diorama_app.projects.begin import begin_project, keep_given
 from diorama_app.projects.reading_again import upload_again, with_depth
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction import build_job as work
-from diorama_app.reconstruction.dropped_photos import build_all_round
+from diorama_app.reconstruction.dropped_photos import build_all_round, build_all_round_again
 from diorama_app.reconstruction.networks import (
     NO_DETECTOR,
     PROPOSALS_ONLY,
@@ -242,6 +242,7 @@ class PhotoPanel:
             "build at once": self._build_found,
             "by hand": self._mark_by_hand,
             "join": lambda: join_photo(client),
+            "build sphere": lambda: build_all_round_again(client),
             "named": lambda: boxes.name(action.pair[1]),
             "name": lambda: boxes.name(action.arg),
         }

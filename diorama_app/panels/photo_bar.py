@@ -38,7 +38,14 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
         pieces.append(button(_("Build at once"), "build at once", title=hint, disabled=busy))
     elif further is None:
         pieces.append(build_button(inputs, busy=busy))
-    if further is not None or awaits_photo(scene):
+    if further is not None and further.inputs.photo.equirectangular:
+        count, hint = (
+            len(inputs.boxes),
+            _("Build the room again from the boxes in this 360 degree photo; one undo step"),
+        )
+        label = _("Build the whole room") + (f" ({count})" if count else "")
+        pieces.append(button(label, "build sphere", title=hint, disabled=busy or not count))
+    elif further is not None or awaits_photo(scene):
         hint = _("Find where this photo was taken, match its objects with those of the scene and insert the others")
         pieces.append(button(_("Add to the scene"), "join", title=hint, disabled=busy))
     doubt = upside_down_note() if further is None and is_upside_down(inputs.boxes, inputs.photo.height) else ""

@@ -25,6 +25,9 @@ TILE_PX = 200
 ADVICE = N_(
     "Take another photo from one or two steps to the side, with most of the same furniture in view. The scene stays."
 )
+ALL_ROUND = N_(
+    "Drag in the 3D view to look around. To change the room, mark its furniture in the whole photo and build again."
+)
 KEPT = 128
 """Encoded pictures."""
 
@@ -51,7 +54,7 @@ class PhotoStrip:
             return
         first = self._tile("", _("First photo"), inputs.photo.rgb, on=client.further_photo is None, joined=True)
         rest = "".join(
-            self._tile(p.name, p.name, p.inputs.photo.rgb, on=p is client.further_photo, joined=p.camera is not None)
+            self._tile(p.name, p.name, p.inputs.photo.rgb, on=p is client.further_photo, joined=p.is_placed)
             for p in session.further_photos
         )
         further = client.further_photo
@@ -109,6 +112,8 @@ class PhotoStrip:
 
 def _about(photo: FurtherPhoto) -> str:
     """What is to do with the chosen photo."""
+    if photo.inputs.photo.equirectangular:
+        return f'<p class="dim" style="margin-top:6px">{text(_(ALL_ROUND))}</p>'
     if photo.camera is None:
         message = _(
             "Mark the furniture that the first photo does not show, or shows less well. Then add it to the scene."

@@ -113,7 +113,11 @@ def build_posed_photos(
         room = build_room(placed, library, choose, layout, progress.part(0.15, 1.0))
         scale = () if poses.metric else ("scale of the cameras: from the usual sizes of the named objects",)
         all_notes = (*poses.notes, *notes, *scale, *room.notes)
-        _save(project, room, read, placed, options.library, all_notes)
+        further = [
+            FurtherPhoto(Path(name).stem, posed.inputs, posed.camera, seen)
+            for (name, _, _), posed, seen in zip(read[1:], placed[1:], room.seen[1:], strict=True)
+        ]
+        _save(project, room, read, placed, further, options.library, all_notes)
     return PosedBuild(room, project, tuple(row[0] for row in read), all_notes)
 
 
@@ -177,7 +181,7 @@ def build_read_sphere(
         )  # fmt: skip
         notes = (*given.warnings, *built.room.notes)
         rows = [(n, partial(_png, v.inputs.photo.rgb), v) for n, v in zip(built.names, built.views, strict=True)]
-        _save(project, built.room, rows, built.views, options.library, notes)
+        _save(project, built.room, rows, built.views, built.further_photos(given.inputs), options.library, notes)
     return PosedBuild(built.room, project, built.names, notes)
 
 
@@ -232,6 +236,7 @@ def _save(
     room: JoinedRoom,
     read: Sequence[_Row],
     placed: Sequence[PosedInputs],
+    further: Sequence[FurtherPhoto],
     library: str,
     notes: tuple[str, ...],
 ) -> None:
@@ -253,10 +258,6 @@ def _save(
     project.save_textures(room.textures)
     project.save_scene(room.scene)
     note_placed(project, room.scene)
-    further = [
-        FurtherPhoto(Path(name).stem, posed.inputs, posed.camera, seen)
-        for (name, _, _), posed, seen in zip(read[1:], placed[1:], room.seen[1:], strict=True)
-    ]
     if len({p.name for p in further}) == len(further):  # photos of one stem and two endings have no names of their own
         save_photos(project, further[:MAX_PHOTOS])
     project.save_stage_runs(room.main.runs)

@@ -211,6 +211,11 @@ def forget_build(project: Project) -> None:
         project.update_info(**{BUILDING: None})
 
 
+def counted(scene: Scene) -> str:
+    """What is said of a scene that was built."""
+    return plural(*BUILT, len(scene.objects))
+
+
 def show_built(
     session: EditorSession,
     project: Project,
@@ -245,7 +250,7 @@ def show_built(
     session.saving.inputs_are_saved(inputs)
     session.commit(label, made.scene, inputs=inputs, further=further if made.again is not None else None)
     session.view.show_whole_room()
-    message = message or plural(*BUILT, len(made.scene.objects))
+    message = message or counted(made.scene)
     if made.again is not None and made.again.left_out:
         names = ", ".join(made.again.left_out)
         message += " " + _("Not in the new scene, to be added again: {names}.").format(names=names)

@@ -34,6 +34,10 @@ COLOURS = ((38, 150, 96), (160, 80, 200), (20, 130, 190), (200, 60, 110), (150, 
 """Colours of other clients' selections; one's own is orange."""
 
 
+SPHERE_VIEW_PX = 600
+"""Height of the pictures that are made of a 360 degree photo, one for each turn of the head."""
+
+
 @dataclass(frozen=True)
 class Placing:
     """The next click in the view puts a shape there."""
@@ -97,6 +101,8 @@ class Client:
         """Shows a line at the foot of the view, with a button that undoes when asked."""
         self.offer: Callable[[str, str, Callable[[], None]], None] = lambda message, label, do: None
         """Shows a line that stays, with a button that does something."""
+        self._sphere_shown: tuple[Photo, Camera, Photo] | None = None
+        """The 360 degree photo of which a view was made last, with the camera of that view and its picture."""
         self.has_left = False
         self.to_say: tuple[str, bool] | None = None
         """What is shown there with the next redraw."""
@@ -139,9 +145,23 @@ class Client:
     def looked_through(self) -> tuple[Camera | None, Photo | None]:
         """The chosen photo and its camera in the scene, where they are known."""
         further = self.further_photo
-        if further is not None:
-            return further.camera, further.inputs.photo
-        return self.session.scene.camera, self.session.photo
+        if further is None:
+            return self.session.scene.camera, self.session.photo
+        if further.T_world_sphere is not None:
+            return self._sphere_view(further, further.T_world_sphere)
+        return further.camera, further.inputs.photo
+
+    def _sphere_view(self, sphere: FurtherPhoto, T_world_sphere: Float[np.ndarray, "4 4"]) -> tuple[Camera, Photo]:
+        """What a 360 degree photo shows where this browser's view looks now."""
+        from diorama_core.geometry.sphere import perspective  # OpenCV; a scene without such a photo opens without it
+
+        photo, look = sphere.inputs.photo, self.view.camera
+        camera, known = look.for_picture(round(SPHERE_VIEW_PX * look.aspect), SPHERE_VIEW_PX), self._sphere_shown
+        if known is None or known[0] is not photo or known[1] != camera:
+            R_sphere_camera = T_world_sphere[:3, :3].T @ camera.T_world_camera[:3, :3]
+            rgb = perspective(photo.rgb, R_sphere_camera, camera.intrinsics)
+            known = self._sphere_shown = (photo, camera, Photo(rgb, photo.name, (photo.width, photo.height)))
+        return known[1:]
 
     def close_dialog(self) -> None:
         """Close what is open over the page."""

@@ -19,6 +19,10 @@ NARROW_FOV_RAD = np.radians(7.0)
 """Field of view along an axis: from far away, lines that are parallel in the room nearly are on the screen."""
 USUAL_ASPECT = 0.93
 """Aspect ratio of the 3D view between the panels in a window of 1280 x 720."""
+AROUND_FOV_RAD = float(np.radians(65.0))
+"""Vertical field of view of who looks around from one place."""
+ARM_M = 0.002
+"""Distance of the point about which the view then turns: the eye stays where it is."""
 MARGIN = 0.04
 """Share of the view that is left free on every side."""
 COVERED = 0.2
@@ -225,6 +229,14 @@ class ViewCamera:
             handle.look_at = camera.position + R[:, 2] * target_distance_m
             handle.wxyz = quaternion_wxyz(R)
         self._viser_client.flush()
+
+    def look_around(self, position: Float[np.ndarray, 3]) -> None:
+        """Look ahead from a place, level, with a target so near that dragging turns the head."""
+        ahead = self.R_world_camera[:, 2] * (1.0, 1.0, 0.0)
+        length = float(np.linalg.norm(ahead))
+        ahead = ahead / length if length > 1e-6 else np.array([0.0, 1.0, 0.0])
+        self.move(position, position + ARM_M * ahead, AROUND_FOV_RAD)
+        self._moves(through_photo=True)
 
     def approach(self, target: Float[np.ndarray, 3], distance_m: float) -> None:
         """Look at a point from `distance_m`, keeping the direction of view."""

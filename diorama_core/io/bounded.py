@@ -22,6 +22,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
+import jaxtyping
 import numpy as np
 from jaxtyping import UInt8
 from PIL import EpsImagePlugin, Image
@@ -252,8 +253,9 @@ def _instance_fits(value: Any, annotation: type) -> bool:
     if annotation in (int, float):
         kinds = (int,) if annotation is int else (int, float)
         return isinstance(value, kinds) and not isinstance(value, bool) and abs(value) < float("inf")
-    if not isinstance(value, annotation):
-        return False
+    with jaxtyping.jaxtyped("context"):  # a caller's named sizes are those of other arrays
+        if not isinstance(value, annotation):
+            return False
     if is_dataclass(value):
         return all(fits(getattr(value, name), hint) for name, hint in field_types(value.__class__).items())
     return not isinstance(value, np.ndarray) or value.dtype.kind != "f" or bool(np.isfinite(value).all())

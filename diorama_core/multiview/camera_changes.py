@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from jaxtyping import Float
 from PIL import ExifTags, Image
 
 from diorama_core.artefacts import FurtherPhoto
@@ -27,8 +28,15 @@ def following(photos: Sequence[FurtherPhoto], before: Camera | None, after: Came
         return tuple(photos)
     scale = None if before is None or after is None else _scale(before, after)
     if scale is None:
-        return tuple(replace(p, camera=None, seen=()) for p in photos)
-    return tuple(replace(p, camera=None if p.camera is None else _scaled(p.camera, scale)) for p in photos)
+        return tuple(replace(p, camera=None, seen=(), T_world_sphere=None) for p in photos)
+    return tuple(
+        replace(
+            p,
+            camera=None if p.camera is None else Camera(p.camera.intrinsics, _scaled(p.camera.T_world_camera, scale)),
+            T_world_sphere=None if p.T_world_sphere is None else _scaled(p.T_world_sphere, scale),
+        )
+        for p in photos
+    )
 
 
 def _scale(before: Camera, after: Camera) -> float | None:
@@ -41,10 +49,10 @@ def _scale(before: Camera, after: Camera) -> float | None:
     return scale if np.abs(after.position - scale * before.position).max() < ROUNDING * max(size, 1.0) else None
 
 
-def _scaled(camera: Camera, scale: float) -> Camera:
-    T = camera.T_world_camera.copy()
+def _scaled(T: Float[np.ndarray, "4 4"], scale: float) -> Float[np.ndarray, "4 4"]:
+    T = T.copy()
     T[:3, 3] *= scale
-    return Camera(camera.intrinsics, T)
+    return T
 
 
 QUARTERS = {3: 2, 6: 1, 8: 3}

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float, UInt8
 
 from diorama_core.architecture.walls.settings import SETTINGS as WALLS
-from diorama_core.artefacts import Inputs, LabelledBox, Photo
+from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox, Photo
 from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.geometry.sphere import directions, level_axes, perspective, sampled
@@ -42,6 +43,7 @@ from diorama_core.multiview.sphere_views import (
     drawn_on_sphere,
     found_in_views,
     marked_views,
+    on_picture,
     sphere_views,
     view_photo,
 )
@@ -88,6 +90,19 @@ class SphereScene:
     R_room_sphere: Float[np.ndarray, "3 3"]
     things: tuple[tuple[SphereBox, str], ...]
     """Objects of the picture, each with the id that it has in the scene if it is there."""
+
+    def further_photos(self, inputs: Inputs) -> tuple[FurtherPhoto, ...]:
+        """The 360 degree photo and its views without the first, which the scene opens with.
+
+        Args:
+            inputs: the 360 degree photo; without boxes it gets those of what was found.
+        """
+        photo, T = inputs.photo, np.eye(4)
+        T[:3, :3], T[:3, 3] = self.R_room_sphere, self.views[0].camera.position
+        found = on_picture([thing for thing, _ in self.things], (photo.width, photo.height), self.R_room_sphere)
+        whole = FurtherPhoto(Path(photo.name).stem, replace(inputs, boxes=inputs.boxes or found), T_world_sphere=T)
+        views = zip(self.names[1:], self.views[1:], self.room.seen[1:], strict=True)
+        return (whole, *(FurtherPhoto(Path(name).stem, v.inputs, v.camera, seen) for name, v, seen in views))
 
 
 def build_sphere(

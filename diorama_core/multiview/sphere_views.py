@@ -14,7 +14,7 @@ from jaxtyping import Float, UInt8
 
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.geometry.projection import box_iou
-from diorama_core.geometry.sphere import directions_at, level_axes, perspective
+from diorama_core.geometry.sphere import directions_at, level_axes, perspective, sphere_pixels
 from diorama_core.library.taxonomy import broad
 from diorama_core.multiview.rooms import PosedInputs
 from diorama_core.scene.types import Camera, Intrinsics
@@ -104,6 +104,30 @@ def _across_seam(boxes: Sequence[LabelledBox], width: int) -> tuple[LabelledBox,
                 whole = (a[0], min(a[1], b[1]), b[2] + width, max(a[3], b[3]))
                 left = [x for x in left if x is not first and x is not second] + [replace(first, box=whole)]
     return tuple(left)
+
+
+def on_picture(
+    things: Sequence[SphereBox], size: tuple[int, int], R_room_sphere: Float[np.ndarray, "3 3"]
+) -> tuple[LabelledBox, ...]:
+    """Boxes of an equirectangular picture around things, two for one that goes on beyond its seam.
+
+    Args:
+        things: on the sphere.
+        size: width and height of the picture, pixels.
+        R_room_sphere: from the picture's frame to the room's.
+    """
+    boxes = []
+    for thing in things:
+        middle = (thing.low + thing.high) / 2
+        azimuth = thing.azimuth + np.array([thing.half_width, -thing.half_width, 0.0, 0.0])
+        elevation = np.array([middle, middle, thing.high, thing.low])
+        across = np.cos(elevation)
+        away = np.column_stack([across * np.cos(azimuth), across * np.sin(azimuth), np.sin(elevation)])
+        at = sphere_pixels(away @ R_room_sphere, size[0])
+        (x1, x2), (y1, y2) = at[:2, 0], np.clip(at[2:, 1], 0.0, size[1])
+        sides = [(x1, x2)] if x1 < x2 else [(x1, float(size[0])), (0.0, x2)]
+        boxes += [replace(thing.labelled, box=(float(a), float(y1), float(b), float(y2))) for a, b in sides]
+    return tuple(boxes)
 
 
 @dataclass(frozen=True, eq=False)

@@ -146,8 +146,9 @@ class EditorPage:
 
     def on_photo(self, x: float, y: float) -> tuple[float, float]:
         """Where a pixel of the photo is on the page."""
-        photo = self.session.photo
-        assert photo is not None
+        marked = self.client.marked
+        assert marked is not None
+        photo = marked.photo
         left, top = self.page.evaluate(ON_PHOTO, [x, y, photo.width, photo.height])
         return float(left), float(top)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,10 +12,14 @@ import pytest
 from PIL import Image
 from playwright.sync_api import expect
 
+from diorama_core.artefacts import FurtherPhoto
+from diorama_core.perception.inputs import read_inputs
 from diorama_core.project.further_photos import save_photos
+from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import LEARN_MS, EditorPage
 from tests.e2e.conftest import StartServer, keep_picture
 from tests.few_shapes import few_shapes
+from tests.multiview.spheres import sphere_with_wardrobe
 from tests.multiview.two_photos import SMALL, project_of, two_photos, with_camera
 
 pytest.importorskip("pycolmap", reason="needs pycolmap (pip install 'diorama[photos]')")
@@ -106,3 +111,36 @@ def test_a_rebuild_keeps_the_other_photo_of_the_room(
     keep_picture(editor, "room-photos-rebuilt-through")
     editor.page.keyboard.press("Control+z")
     editor.until(lambda: editor.session.scene == before, "undone in one step")
+
+
+def test_a_360_degree_photo_is_marked_and_looked_around_in(
+    serve: StartServer, visit: Callable[..., EditorPage], tmp_path: Path
+) -> None:
+    project = make_project(tmp_path / "projects" / "room")
+    Image.open(io.BytesIO(sphere_with_wardrobe(1.4)[0])).save(tmp_path / "all.png")
+    inputs = read_inputs(tmp_path / "all.png", sphere=True).inputs
+    at = np.eye(4)
+    at[:3, 3] = (0.0, 0.0, 1.4)
+    save_photos(project, (FurtherPhoto("all", inputs, T_world_sphere=at),))
+    editor = visit(serve(project.folder, library=PlainLibrary()))
+    editor.tab("Photo")
+    editor.page.locator('.dio .tile[data-arg="all"]').click()
+    editor.until(lambda: editor.client.view.camera.through_photo, "looked around")
+    editor.settle()
+    first = editor.client.looked_through[0]
+    assert first is not None
+    left, top, width, height = editor.canvas_box()
+    middle = (left + width / 2, top + height / 2)
+    editor.drag(middle, (middle[0] - width / 5, middle[1]))
+    ahead = first.T_world_camera[:3, 2]
+    editor.until(lambda: editor.client.looked_through[0].T_world_camera[:3, 2] @ ahead < 0.98, "turned")
+    assert np.linalg.norm(editor.client.view.camera.position - at[:3, 3]) < 0.01
+    keep_picture(editor, "sphere-turned")
+    editor.button("Mark furniture").click()
+    editor.at_board()
+    editor.draw_box((300.0, 220.0, 420.0, 330.0))
+    editor.until(lambda: len(editor.session.further_photos[0].inputs.boxes) == 1, "drawn")
+    box = editor.session.further_photos[0].inputs.boxes[0].box
+    assert box == pytest.approx((300.0, 220.0, 420.0, 330.0), abs=4.0)
+    expect(editor.button("Build the whole room (1)")).to_be_enabled()
+    keep_picture(editor, "sphere-marked")

@@ -17,6 +17,7 @@ PHOTO = Photo(np.zeros((4, 6, 3), np.uint8), "p.png", (6, 4))
 FURTHER = (
     FurtherPhoto("p", Inputs(PHOTO), CAMERAS[1], (("chair_1", (0.0, 0.0, 2.0, 2.0)),)),
     FurtherPhoto("q", Inputs(PHOTO)),
+    FurtherPhoto("sphere", Inputs(PHOTO), T_world_sphere=CAMERAS[1].T_world_camera),
 )
 
 
@@ -35,12 +36,13 @@ def test_a_scaled_scene_takes_the_photos_along() -> None:
     assert now[0].camera == scaled(CAMERAS[1], 1.5)
     assert now[0].seen == FURTHER[0].seen
     assert now[1].camera is None
+    assert now[2].T_world_sphere == pytest.approx(scaled(CAMERAS[1], 1.5).T_world_camera)
 
 
 def test_a_scene_built_anew_lets_them_go() -> None:
     for after in (CAMERAS[2], None):
         now = following(FURTHER, CAMERAS[0], after)
-        assert [p.camera for p in now] == [None, None]
+        assert not any(p.is_placed for p in now)
         assert now[0].seen == ()
         assert now[0].inputs is FURTHER[0].inputs
 

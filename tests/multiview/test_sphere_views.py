@@ -11,6 +11,7 @@ from diorama_core.multiview.sphere_views import (
     drawn_on_sphere,
     found_in_views,
     marked_views,
+    on_picture,
     sphere_views,
     view_photo,
 )
@@ -44,6 +45,19 @@ def test_a_thing_at_the_seam_is_one() -> None:
     whole = next(t for t in things if t.labelled.category == "chair")
     assert whole.half_width == pytest.approx(np.pi * 118 / 2048)
     assert whole.azimuth == pytest.approx(np.pi / 2, abs=0.01)  # the seam is behind: +Y
+
+
+@given(st.floats(0, 2047), st.floats(20, 400), st.floats(300, 500), st.floats(30, 400))
+def test_boxes_of_the_picture_come_back_also_across_the_seam(x: float, wide: float, y: float, tall: float) -> None:
+    drawn = LabelledBox((x, y, x + wide, y + tall), "chair", "chair")
+    things = drawn_on_sphere([drawn], SIZE, np.eye(3))
+    boxes = on_picture(things, SIZE, np.eye(3))
+    assert len(boxes) == (2 if x + wide > SIZE[0] else 1)
+    assert boxes[0].box[0] == pytest.approx(x, abs=0.01)
+    assert boxes[-1].box[2] == pytest.approx((x + wide) % SIZE[0], abs=0.01)
+    assert all(b.box[1::2] == pytest.approx((y, y + tall), abs=0.01) for b in boxes)
+    (again,) = drawn_on_sphere(boxes, SIZE, np.eye(3))
+    assert again.half_width == pytest.approx(things[0].half_width, abs=1e-4)
 
 
 def test_views_are_marked_with_the_best_one_first_and_what_is_found_twice_is_one() -> None:

@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from diorama_app.viewport.camera import NARROW_FOV_RAD
+from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
 from diorama_core.errors import EditRefused
+from diorama_core.geometry.rotations import quaternion_wxyz
+from diorama_core.geometry.sphere import level_axes
 from diorama_core.scene.types import Scene
 
 
@@ -49,6 +52,34 @@ def test_the_photo_view_needs_a_photo_and_the_plain_views_leave_it(session, clie
         views.photo(client)
     with pytest.raises(EditRefused, match="no photo"):
         views.overlay(client, 0.5)
+
+
+def test_a_360_degree_photo_turns_with_the_view_until_one_walks_away(session, client, views) -> None:
+    at = np.eye(4)
+    at[:3, 3] = (0.3, 0.2, 1.5)
+    rgb = np.broadcast_to(np.arange(256, dtype=np.uint8)[None, :, None], (128, 256, 3))  # columns by azimuth
+    sphere = FurtherPhoto("all", Inputs(Photo(rgb, "all.jpg", (256, 128), equirectangular=True)), T_world_sphere=at)
+    session.commit("add", session.scene, further=(sphere,))
+    views.photo_of(client, "all")
+    views.overlay(client, 0.5)
+    np.testing.assert_allclose(client.view.camera.position, at[:3, 3], atol=0.01)
+    shown = {}
+    for x, y in ((0.0, -1.0), (1.0, 0.0), (0.0, 1.0)):
+        ahead = np.array([x, y, 0.0])
+        camera = client.viser_client.camera
+        camera.position, camera.look_at = at[:3, 3], at[:3, 3] + 0.002 * ahead
+        camera.wxyz = quaternion_wxyz(level_axes(float(np.arctan2(y, x))))
+        views.turned(client)
+        seen, photo = client.looked_through
+        np.testing.assert_allclose(seen.T_world_camera[:3, 2], ahead, atol=1e-6)
+        shown[x, y] = int(photo.rgb[300, photo.width // 2, 0])
+        assert client.view.photo.opacity == 0.5
+    assert shown[0.0, -1.0] == pytest.approx(128, abs=2), "the middle column looks along -Y"
+    assert shown[1.0, 0.0] == pytest.approx(64, abs=2), "and +X is a quarter to the left"
+    client.viser_client.camera.position = at[:3, 3] + (0.5, 0.0, 0.0)
+    views.turned(client)
+    assert client.view.photo.opacity == 0.0
+    assert not client.view.camera.through_photo
 
 
 def test_focus_goes_to_the_middle_of_what_is_selected(session, client, views, moves) -> None:

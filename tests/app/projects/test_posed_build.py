@@ -20,6 +20,7 @@ from diorama_core.multiview.posed_photos import PosedPhoto, read_poses
 from diorama_core.multiview.rooms import build_room, photo_world
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.progress import Progress
+from diorama_core.project.further_photos import load_photos
 from diorama_core.project.storage import Project
 from tests.cli.room_photo import room_picture
 from tests.few_shapes import stored_seats
@@ -128,6 +129,12 @@ def test_a_360_degree_photo_becomes_one_closed_room(tmp_path: Path, capsys) -> N
     assert len(said["photos"]) == 8
     scene = Project.open(tmp_path / "room").load_scene()
     assert [o.category for o in scene.objects] == ["wardrobe"]
+    photos, damage = load_photos(Project.open(tmp_path / "room"))
+    assert not damage
+    assert [p.inputs.photo.equirectangular for p in photos] == [True, *[None] * 7]
+    assert [b.label for b in photos[0].inputs.boxes] == ["wardrobe"]
+    assert photos[0].T_world_sphere is not None
+    assert photos[0].T_world_sphere[2, 3] == pytest.approx(height_m, rel=0.12)
     floor = scene.architecture.floor
     assert floor is not None
     assert len(scene.architecture.by_role("wall")) == 4
