@@ -22,7 +22,9 @@ _idle: list[tuple[Key, subprocess.Popen[bytes], limited._Messages]] = []
 _keys: dict[int, Key] = {}
 """By a process's id."""
 _one_at_a_time = threading.Lock()
-_started, _close, _end = LimitedProcess._started, LimitedProcess.close, LimitedProcess._end
+_started, _close, _stop, _end = (
+    LimitedProcess._started, LimitedProcess.close, LimitedProcess.stop, LimitedProcess._end,
+)  # fmt: skip
 
 
 def _key(process: LimitedProcess) -> Key:
@@ -58,10 +60,16 @@ def close(self: LimitedProcess) -> None:
             end(_idle.pop(0))
 
 
+def stop(self: LimitedProcess) -> None:
+    """In place of `LimitedProcess.stop`: a process that reads is ended, one that waits is kept."""
+    (_stop if self._lock.locked() else close)(self)
+
+
 def keep(patch: pytest.MonkeyPatch, *, kept: bool = True) -> None:
     """Keep processes, or start and end them as the program does."""
     patch.setattr(LimitedProcess, "_started", started if kept else _started)
     patch.setattr(LimitedProcess, "close", close if kept else _close)
+    patch.setattr(LimitedProcess, "stop", stop if kept else _stop)
 
 
 def end(*idle: tuple[Key, subprocess.Popen[bytes], limited._Messages]) -> None:

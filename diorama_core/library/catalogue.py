@@ -8,7 +8,7 @@ import json
 import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from pickle import PicklingError
 
@@ -116,6 +116,10 @@ class BuiltInLibrary:
 
     def shapes(self) -> tuple[Shape, ...]:
         """All records in a stable order, without support surfaces."""
+        return self._listed
+
+    @cached_property
+    def _listed(self) -> tuple[Shape, ...]:
         return tuple(self._record(shape_id) for shape_id in self._designs)
 
     def in_category(self, category: str) -> tuple[Shape, ...]:
