@@ -17,6 +17,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.few_shapes import stored_seats
+
 ROOT = Path(__file__).resolve().parents[2]
 CONNECT = re.compile(r"connect\(\d+, \{sa_family=AF_INET6?, .*?(?:inet_addr\(\"|AF_INET6, \")([0-9a-f.:]+)\"")
 
@@ -45,8 +47,8 @@ running.stop()
 """
 BUILD_AND_EXPORT = """
 from diorama_app.cli import main
-photo, boxes, built, model = sys.argv[2:]
-assert main(["build", photo, "-o", built, "--boxes", boxes]) == 0
+photo, boxes, library, built, model = sys.argv[2:]
+assert main(["build", photo, "-o", built, "--boxes", boxes, "--library", library]) == 0
 assert main(["export", built, "--format", "glb", "-o", model]) == 0
 """
 
@@ -100,8 +102,9 @@ def test_serving_building_and_exporting_need_no_network(tmp_path: Path) -> None:
     rows = np.linspace(230, 90, 240)[:, None, None] * np.ones((1, 320, 3))
     Image.fromarray(rows.astype(np.uint8)).save(tmp_path / "room.png")
     (tmp_path / "boxes.json").write_text('[{"bbox": [90, 120, 200, 220], "class": "chair"}]')
-    files = [tmp_path / name for name in ("room.png", "boxes.json", "built", "room.glb")]
-    run([*prefix, *watched], tmp_path / "asked", SERVE + BUILD_AND_EXPORT, project.folder, *files)
+    photo, boxes, *made = (tmp_path / name for name in ("room.png", "boxes.json", "built", "room.glb"))
+    given = (project.folder, photo, boxes, stored_seats(), *made)
+    run([*prefix, *watched], tmp_path / "asked", SERVE + BUILD_AND_EXPORT, *given)
     assert not (tmp_path / "asked").exists(), (tmp_path / "asked").read_text()
     if watched:
         asked = {a for a in CONNECT.findall((tmp_path / "trace").read_text()) if not a.startswith(("127.", "::1"))}

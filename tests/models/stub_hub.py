@@ -10,7 +10,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from types import SimpleNamespace
 from typing import Any
+
+import pytest
 
 SHA = "0123456789abcdef0123456789abcdef01234567"
 
@@ -114,6 +117,12 @@ def _handler(hub: Hub) -> type[BaseHTTPRequestHandler]:
                 self.wfile.write(data)
 
     return Handler
+
+
+def try_again_at_once(patch: pytest.MonkeyPatch) -> None:
+    """The hub's client does not wait a second before each of its five tries."""
+    at_once = SimpleNamespace(**{**vars(time), "sleep": lambda seconds: None})
+    patch.setattr("huggingface_hub.file_download.time", at_once)
 
 
 @contextmanager

@@ -16,7 +16,7 @@ from diorama_core.models.network import TIERS, ModelFile, Network
 from diorama_core.models.pull import pull
 from diorama_core.models.store import ModelStore, default_folder
 from diorama_core.progress import SILENT, CancelToken, Progress, ProgressEvent
-from tests.models.stub_hub import SHA, Hub, serving
+from tests.models.stub_hub import SHA, Hub, serving, try_again_at_once
 
 GRAPH = bytes(range(256)) * 4000
 """About a megabyte, so that a transfer takes several chunks."""
@@ -50,7 +50,8 @@ def hub(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hub]:
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> ModelStore:
+def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModelStore:
+    try_again_at_once(monkeypatch)
     return ModelStore(tmp_path / "models")
 
 

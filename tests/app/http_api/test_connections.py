@@ -17,13 +17,14 @@ from diorama_app.http_api.access import Application, Connection
 from tests.app.http_api.test_access import served
 
 
-async def _sent(*parts: bytes, app: Application = served, times_out: int = 0) -> bytes:
+async def _sent(*parts: bytes, app: Application = served, times_out: int = 0, idle_s: int = 5) -> bytes:
     """What a server answers to these parts, the later ones sent after an answer to the earlier, until it closes.
 
     Args:
         parts: bytes of requests.
         app: what answers.
         times_out: which of the waits for a head ends then, the first is 1; none by itself.
+        idle_s: when a connection is closed after an answer.
     """
     loop, timers = asyncio.get_running_loop(), []
     call_later = loop.call_later
@@ -34,7 +35,9 @@ async def _sent(*parts: bytes, app: Application = served, times_out: int = 0) ->
         return handle
 
     loop.call_later = noted
-    config = uvicorn.Config(app, port=0, http=Connection, log_level="error", lifespan="off", ws="none")
+    config = uvicorn.Config(
+        app, port=0, http=Connection, log_level="error", lifespan="off", ws="none", timeout_keep_alive=idle_s
+    )
     server = uvicorn.Server(config)
     task = asyncio.create_task(server.serve())
     while not server.started:
@@ -73,7 +76,7 @@ def test_a_second_request_on_a_connection_has_as_long_as_the_first() -> None:
 
 
 def test_half_a_request_behind_a_whole_one_is_given_up() -> None:
-    answer = asyncio.run(_sent(WHOLE + b"GET /"))
+    answer = asyncio.run(_sent(WHOLE + b"GET /", idle_s=1))
     assert answer.count(b"HTTP/1.1 200") == 1
 
 

@@ -23,7 +23,7 @@ from diorama_core.project.storage import Project
 from tests.app.people import LocalClient
 from tests.app.small_room import plain_photo
 from tests.models import tiny_networks
-from tests.models.stub_hub import SHA, Hub, serving
+from tests.models.stub_hub import SHA, Hub, serving, try_again_at_once
 from tests.pipeline.test_presets import BOX, HEIGHT, WIDTH, _Yolox, install
 
 GRAPH = bytes(range(256)) * 2000
@@ -43,6 +43,7 @@ def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModelStore:
     for name in ("DIORAMA_LMM_BASE_URL", "DIORAMA_IMAGE_BASE_URL", "HF_HUB_OFFLINE"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("DIORAMA_MODELS", str(tmp_path / "models"))
+    try_again_at_once(monkeypatch)
     return ModelStore.default()
 
 
