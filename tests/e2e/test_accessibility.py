@@ -24,12 +24,22 @@ OF_COLOURS = ["color-contrast"]
 FINDINGS = """async (rules) => {
     const fading = document.getAnimations().filter((a) => a.animationName === "dio-fade");
     fading.forEach((a) => { a.pause(); a.currentTime = 0; });
-    const found = await axe.run(document, { runOnly: rules, resultTypes: ["violations"], selectors: false });
+    const seen = (window.__axeSeen ??= new Set()), known = [], fresh = [];
+    const walk = (e, above) => {
+        const html = above + e.outerHTML, within = html.slice(0, html.length - e.innerHTML.length);
+        if (seen.has(html)) known.push(e);
+        else { fresh.push(html); [...e.children].forEach((child) => walk(child, within)); }
+    };
+    walk(document.body, document.documentElement.className);
+    const options = { runOnly: rules, resultTypes: ["violations"], selectors: false };
+    const found = await axe.run({ include: document, exclude: known }, options);
+    fresh.forEach((html) => seen.add(html));
     fading.forEach((a) => a.finish());
     return found.violations.filter((v) => ["serious", "critical"].includes(v.impact)).flatMap((v) =>
         v.nodes.map((n) => `${v.id}: ${n.html.slice(0, 160)} ${(n.any[0] || {}).message || ""}`));
 }"""
-"""A message that fades is looked at as it came: half faded words have another contrast than the ones to be read."""
+"""A message that fades is looked at as it came: half faded words have another contrast than the ones to be read.
+What was looked at before and is the same, within the same, is left out: most of a page, from one tab to the next."""
 TABS = ("Scene", "Photo", "Arrange", "Project", "Object", "Library", "Export")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 import trimesh
 from PIL import Image
-from playwright.sync_api import Download, Locator, expect
+from playwright.sync_api import BrowserContext, Download, Locator, expect
 
 from diorama_app.projects import formats
-from diorama_app.serve import Running
+from diorama_app.serve import start
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_to_json
-from tests.e2e.browser import LEARN_MS, PATIENCE_MS, EditorPage
+from tests.e2e.browser import LEARN_MS, PATIENCE_MS, QUERY, EditorPage
 from tests.e2e.conftest import keep_picture
 from tests.export import gltf_reader
 
@@ -65,13 +65,23 @@ class GlbFile:
         return any("diorama_photo" in n.get("extras", {}) for n in self.nodes)
 
 
-@pytest.fixture
-def example(serve: Callable[..., Running], visit: Callable[[Running], EditorPage]) -> Iterator[EditorPage]:
-    """The bundled example, whose shapes every library has."""
-    page = visit(serve())
+@pytest.fixture(scope="module")
+def example(context: BrowserContext, tmp_path_factory: pytest.TempPathFactory) -> Iterator[EditorPage]:
+    """The bundled example, for the last tests here: it lies over the tab of the others, which is drawn slowly then."""
+    page = EditorPage.open(context, start(projects_dir=tmp_path_factory.mktemp("example"), low_graphics=True))
     yield page
-    page.running.session.jobs.cancel()
-    page.running.session.jobs.wait(10.0)
+    page.page.close()
+    page.running.stop()
+    assert not page.errors, page.errors
+
+
+@pytest.fixture(scope="module")
+def plain_path(example: EditorPage, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The example's GLB, before any switch of it is turned."""
+    choose(example, "glb")
+    path = download(example, "Export .glb", tmp_path_factory.mktemp("plain") / "my room.glb")
+    example.running.session.jobs.wait(30.0)
+    return path
 
 
 def choose(editor: EditorPage, format_name: str) -> None:
@@ -146,33 +156,6 @@ def test_options_change_what_is_written(editor: EditorPage, tmp_path: Path) -> N
     editor.running.session.jobs.wait(10.0)
 
 
-@pytest.mark.skipif(find_spec("DracoPy") is None, reason="needs the extra 'draco'")
-def test_every_switch_of_a_model_is_in_its_file(example: EditorPage, tmp_path: Path) -> None:
-    choose(example, "glb")
-    plain = glb_of(example, tmp_path / "plain.glb")
-    assert plain.roles == {"floor", "wall", "ceiling"}
-    assert "extensionsRequired" not in plain.document
-    assert not plain.has_photo
-    assert max(plain.picture_sizes) > 256
-
-    turn_on(example, "Without ceiling")
-    example.page.get_by_label("Textures").select_option("256")
-    example.page.get_by_label("Compression").select_option("meshopt")
-    small = glb_of(example, tmp_path / "small.glb")
-    assert small.roles == {"floor", "wall"}
-    assert max(small.picture_sizes) == 256
-    assert "EXT_meshopt_compression" in small.document["extensionsRequired"]
-
-    turn_off(example, "Without ceiling")
-    example.page.get_by_label("Compression").select_option("draco")
-    turn_on(example, "With photo")
-    packed = glb_of(example, tmp_path / "packed.glb")
-    assert packed.roles == plain.roles
-    assert "KHR_draco_mesh_compression" in packed.document["extensionsRequired"]
-    assert packed.has_photo
-    assert max(small.size, packed.size) < plain.size
-
-
 def test_simulators_get_objects_that_move_or_not(editor: EditorPage, tmp_path: Path) -> None:
     choose(editor, "mjcf")
     assert b"freejoint" in model_in(download(editor, "Export .zip", tmp_path / "free.zip"))
@@ -186,63 +169,6 @@ def model_in(package: Path) -> bytes:
     """The MuJoCo model in a zip."""
     with zipfile.ZipFile(package) as archive:
         return archive.read(next(n for n in archive.namelist() if n.endswith(".xml")))
-
-
-def test_an_exported_glb_is_opened_again_with_the_same_scene(example: EditorPage, tmp_path: Path) -> None:
-    session = example.running.session
-    before, folder = session.scene, session.project.folder if session.project else None
-    choose(example, "glb")
-    path = download(example, "Export .glb", tmp_path / "my room.glb")
-    session.jobs.wait(10.0)
-    example.tab("Project")
-    example.until(lambda: session.jobs.status is None)
-    expect(example.button("Open a file")).to_be_enabled()
-    example.upload("Open a file", path)
-    example.until(
-        lambda: example.session.project is not None and example.session.project.folder != folder,
-        "a project of its own",
-        JOB_MS / 1000,
-    )
-    opened = example.session
-    example.until(lambda: bool(opened.scene.objects), "its scene is read")
-    assert opened.project is not None
-    assert opened.project.name == "my room"
-    assert opened.scene.objects == before.objects
-    assert opened.scene.supports == before.supports
-    assert scene_to_json(opened.scene) == scene_to_json(before)
-    assert Project.open(opened.project.folder).load_scene() == opened.scene
-    example.settle()
-    drawn = example.page.evaluate("Object.keys(window.__viserMutable.nodeRefFromName)")
-    for item in opened.scene.objects:
-        assert any(n.startswith(f"{opened.viewport.node_name(item.id)}/") for n in drawn), f"{item.id} is drawn"
-    expect(example.page.get_by_text("Opened from my room.glb.")).to_be_visible()
-
-
-def test_the_page_of_one_file_opens_without_a_server(example: EditorPage, context, tmp_path: Path) -> None:
-    choose(example, "html")
-    path = download(example, "Export .html", tmp_path / "room.html")
-    viewer = context.new_page()
-    viewer.set_viewport_size({"width": 550, "height": 320})  # software draws its many pixels slowly
-    errors: list[str] = []
-    viewer.on("pageerror", lambda error: errors.append(str(error)))
-    try:
-        viewer.goto(path.as_uri())
-        viewer.locator("canvas").first.wait_for(timeout=PATIENCE_MS)
-        for _ in range(20):
-            viewer.wait_for_timeout(1000)
-            shot = np.asarray(Image.open(io.BytesIO(viewer.screenshot(timeout=PATIENCE_MS))).convert("RGB"))
-            if colours(shot) > 15:
-                break
-        keep_picture(EditorPage(viewer, example.running), "exported_viewer")
-    finally:
-        viewer.close()
-    assert not errors, errors
-    assert colours(shot) > 15, "a furnished room has many colours"
-
-
-def colours(picture: np.ndarray) -> float:
-    """How far the colours of a picture are apart."""
-    return float(picture.reshape(-1, 3).std(axis=0).min())
 
 
 @pytest.mark.parametrize(
@@ -343,3 +269,84 @@ def test_a_file_of_another_program_becomes_objects_that_are_drawn(editor: Editor
     editor.settle()
     shown = editor.page.evaluate("Object.keys(window.__viserMutable.nodeRefFromName)")
     assert any(n.startswith(f"{session.viewport.node_name(item.id)}/") for n in shown), "it is drawn"
+
+
+def test_the_page_of_one_file_opens_without_a_server(example: EditorPage, context, tmp_path: Path) -> None:
+    choose(example, "html")
+    path = download(example, "Export .html", tmp_path / "room.html")
+    viewer = context.new_page()
+    viewer.set_viewport_size({"width": 550, "height": 320})  # software draws its many pixels slowly
+    errors: list[str] = []
+    viewer.on("pageerror", lambda error: errors.append(str(error)))
+    try:
+        viewer.goto(path.as_uri() + QUERY)
+        viewer.locator("canvas").first.wait_for(timeout=PATIENCE_MS)
+        for _ in range(20):
+            viewer.wait_for_timeout(1000)
+            shot = np.asarray(Image.open(io.BytesIO(viewer.screenshot(timeout=PATIENCE_MS))).convert("RGB"))
+            if colours(shot) > 15:
+                break
+        keep_picture(EditorPage(viewer, example.running), "exported_viewer")
+    finally:
+        viewer.close()
+    assert not errors, errors
+    assert colours(shot) > 15, "a furnished room has many colours"
+
+
+def colours(picture: np.ndarray) -> float:
+    """How far the colours of a picture are apart."""
+    return float(picture.reshape(-1, 3).std(axis=0).min())
+
+
+@pytest.mark.skipif(find_spec("DracoPy") is None, reason="needs the extra 'draco'")
+def test_every_switch_of_a_model_is_in_its_file(example: EditorPage, plain_path: Path, tmp_path: Path) -> None:
+    plain = GlbFile.read(plain_path)
+    assert plain.roles == {"floor", "wall", "ceiling"}
+    assert "extensionsRequired" not in plain.document
+    assert not plain.has_photo
+    assert max(plain.picture_sizes) > 256
+
+    turn_on(example, "Without ceiling")
+    example.page.get_by_label("Textures").select_option("256")
+    example.page.get_by_label("Compression").select_option("meshopt")
+    small = glb_of(example, tmp_path / "small.glb")
+    assert small.roles == {"floor", "wall"}
+    assert max(small.picture_sizes) == 256
+    assert "EXT_meshopt_compression" in small.document["extensionsRequired"]
+
+    turn_off(example, "Without ceiling")
+    example.page.get_by_label("Compression").select_option("draco")
+    turn_on(example, "With photo")
+    packed = glb_of(example, tmp_path / "packed.glb")
+    assert packed.roles == plain.roles
+    assert "KHR_draco_mesh_compression" in packed.document["extensionsRequired"]
+    assert packed.has_photo
+    assert max(small.size, packed.size) < plain.size
+    example.running.session.jobs.wait(10.0)
+
+
+def test_an_exported_glb_is_opened_again_with_the_same_scene(example: EditorPage, plain_path: Path) -> None:
+    session = example.running.session
+    before, folder = session.scene, session.project.folder if session.project else None
+    example.tab("Project")
+    example.until(lambda: session.jobs.status is None)
+    expect(example.button("Open a file")).to_be_enabled()
+    example.upload("Open a file", plain_path)
+    example.until(
+        lambda: example.session.project is not None and example.session.project.folder != folder,
+        "a project of its own",
+        JOB_MS / 1000,
+    )
+    opened = example.session
+    example.until(lambda: bool(opened.scene.objects), "its scene is read")
+    assert opened.project is not None
+    assert opened.project.name == "my room"
+    assert opened.scene.objects == before.objects
+    assert opened.scene.supports == before.supports
+    assert scene_to_json(opened.scene) == scene_to_json(before)
+    assert Project.open(opened.project.folder).load_scene() == opened.scene
+    example.settle()
+    drawn = example.page.evaluate("Object.keys(window.__viserMutable.nodeRefFromName)")
+    for item in opened.scene.objects:
+        assert any(n.startswith(f"{opened.viewport.node_name(item.id)}/") for n in drawn), f"{item.id} is drawn"
+    expect(example.page.get_by_text("Opened from my room.glb.")).to_be_visible()

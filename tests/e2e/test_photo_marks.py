@@ -18,7 +18,7 @@ from playwright.sync_api import expect
 from diorama_app.projects.example import EXAMPLE
 from diorama_core.artefacts import LabelledBox
 from diorama_core.project.storage import Project
-from tests.app.small_room import make_project, plain_photo
+from tests.app.small_room import PlainLibrary, make_project, plain_photo
 from tests.e2e.browser import QUERY, EditorPage
 from tests.ports import lasting_port
 from tests.waiting import until
@@ -187,7 +187,7 @@ def saved_boxes(folder: Path) -> tuple[LabelledBox, ...]:
 
 
 @pytest.mark.posix
-def test_what_was_drawn_outlives_a_killed_server(context, serve_apart, photo: Path, tmp_path: Path) -> None:
+def test_what_was_drawn_outlives_a_killed_server(context, serve_apart, serve, photo: Path, tmp_path: Path) -> None:
     port = lasting_port()
     server = serve_apart(port)
     assert server.stdout is not None
@@ -211,9 +211,7 @@ def test_what_was_drawn_outlives_a_killed_server(context, serve_apart, photo: Pa
     until(lambda: saved_boxes(folder), "the box is saved")
     os.kill(server.pid, signal.SIGKILL)
     server.wait()
-    again = serve_apart(port)
-    assert again.stdout is not None
-    again.stdout.readline()
+    serve(tmp_path / "projects" / "demo", PlainLibrary(), port=port)
     page.goto(f"http://127.0.0.1:{port}/{QUERY}")
     page.get_by_role("tab", name="Project", exact=True).click()
     page.locator(".dio .row", has_text="my room").get_by_role("button", name="Open").click()

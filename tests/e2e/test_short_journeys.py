@@ -105,8 +105,15 @@ def test_from_a_photo_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
     page.locator(".dio-canvas-proposal").first.wait_for(timeout=60_000)
     page.screenshot(path=str(ARTEFACTS / "journey-board.png"))
     session = editor.session
+    expect(page.locator(".dio-canvas-lines")).to_be_visible(timeout=120_000)  # a build has begun by itself
     hand.click(page.get_by_role("button", name="Mark it myself").first, "Mark it myself")
     editor.until(lambda: session.jobs.status is None, "stopped", seconds=60)
+    expect(page.locator(".dio-canvas-lines")).to_have_count(0)
+    assert session.unfinished
+    page.get_by_role("button", name="Build at once").click()
+    editor.button("Cancel").click()
+    editor.until(lambda: session.jobs.status is None, "stopped again", seconds=60)
+    expect(page.locator(".dio-canvas-proposal").first).to_be_visible()
     hand.click(page.get_by_role("button", name="Accept all").first, "Accept all")
     editor.until(lambda: bool(session.inputs.boxes), "accepted")
     number = len(session.inputs.boxes)

@@ -13,15 +13,12 @@ from PIL import Image
 from playwright.sync_api import BrowserContext, expect
 
 from diorama_app.app import Editor
-from diorama_app.projects.example import EXAMPLE
 from diorama_app.serve import Running, start
 from diorama_core.geometry.planes import plane_rectangle
-from diorama_core.library.record import ShapeLibrary
 from diorama_core.project.storage import Project
 from tests.app.small_room import PlainLibrary, make_project
 from tests.e2e.browser import QUERY, EditorPage
 from tests.e2e.conftest import FAILED, keep_picture
-from tests.few_shapes import example_scene, few_shapes
 from tests.ports import free, lasting_port
 from tests.waiting import until
 
@@ -29,19 +26,10 @@ pytestmark = pytest.mark.browser
 
 
 @pytest.fixture
-def library() -> str:
-    return "built-in"
-
-
-@pytest.fixture
 def newcomer(
-    context: BrowserContext,
-    serve: Callable[..., Running],
-    library: str | Callable[[], ShapeLibrary],
-    request: pytest.FixtureRequest,
+    context: BrowserContext, serve: Callable[..., Running], request: pytest.FixtureRequest
 ) -> Iterator[EditorPage]:
-    running = serve(library=library if isinstance(library, str) else library())
-    page = EditorPage.open(context, running, newcomer=True)
+    page = EditorPage.open(context, serve(), newcomer=True)
     yield page
     keep_picture(page, request.node.name, failed=request.node.stash[FAILED])
     page.page.close()
@@ -91,28 +79,6 @@ def test_what_is_no_picture_is_said_and_the_start_page_stays(newcomer: EditorPag
     newcomer.at_board()
     expect(begun).to_have_count(0)
     expect(page.locator("#dio-tour")).to_have_count(0)
-
-
-@pytest.mark.parametrize("library", [lambda: few_shapes(example_scene())], ids=["few shapes"])
-def test_an_uploaded_photo_is_built_without_a_click_unless_one_marks_it(newcomer: EditorPage) -> None:
-    page = newcomer.page
-    with page.expect_file_chooser() as chosen:
-        page.locator("#dio-start label.main").click()
-    chosen.value.set_files(str(EXAMPLE / "photo.jpg"))
-    newcomer.until(lambda: newcomer.session.unfinished, "a project of its own")
-    session = newcomer.session
-    by_hand = page.get_by_role("button", name="Mark it myself")
-    expect(by_hand).to_be_visible(timeout=60_000)
-    expect(page.locator(".dio-canvas-lines")).to_be_visible(timeout=120_000)
-    by_hand.click()
-    newcomer.until(lambda: session.jobs.status is None, "stopped", seconds=60)
-    expect(page.locator(".dio-canvas")).to_be_visible()
-    expect(page.locator(".dio-canvas-lines")).to_have_count(0)
-    expect(page.locator(".dio-canvas-proposal").first).to_be_visible()
-    assert session.unfinished
-    page.get_by_role("button", name="Build at once").click()
-    newcomer.until(lambda: bool(session.scene.objects), "built", seconds=240)
-    expect(page.locator(".job.card", has_text="sure")).to_be_visible()
 
 
 def test_an_example_is_furnished_and_the_tour_is_skipped(newcomer: EditorPage) -> None:
