@@ -10,7 +10,7 @@ from diorama_core.progress import CancelToken, Progress
 
 
 def test_tables_are_whole(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(layout, "ROOM", 8)
+    monkeypatch.setattr(layout, "ROOM", 5)
     result = layout.run(scenes=1, seed=3)
     feasible = result.ablation[-1]
     assert feasible.name == "feasible"
