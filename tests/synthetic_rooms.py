@@ -97,13 +97,12 @@ def shoot(camera: Camera, planes, cuboids=(), categories=(), noise: float = 0.0,
     instances = np.zeros(depth.shape, np.int32)
     for index, item in enumerate(cuboids, 1):
         window = _window(camera, item)
-        t, normals = np.full(depth.shape, np.inf), np.zeros(rays.shape)
-        t[window], normals[window] = cast_box(origin, rays[window], item.R_world_object, item.centre, item.size_m)
-        nearer = t < depth
+        t, normals = cast_box(origin, rays[window], item.R_world_object, item.centre, item.size_m)
+        nearer = t < depth[window]
         shade = 60 + 50 * np.abs(normals @ np.array([0.3, 0.6, 1.0]))
         colour = np.array([1.0, 0.5 + 0.1 * (index % 5), 0.4]) * shade[..., None]
-        rgb, depth = np.where(nearer[..., None], colour, rgb), np.where(nearer, t, depth)
-        instances = np.where(nearer, index, instances)
+        for picture, value in ((rgb, colour), (depth, t), (instances, np.full(t.shape, index))):
+            picture[window][nearer] = value[nearer]
     rgb = (rgb + rng.normal(0, 3, rgb.shape)).clip(0, 255).astype(np.uint8)
     measured = np.where(np.isfinite(depth), depth * (1 + noise * rng.standard_normal(depth.shape)), 0.0)
     k = camera.intrinsics

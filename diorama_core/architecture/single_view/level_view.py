@@ -109,9 +109,9 @@ def projected(
     local = directions @ camera.T_world_camera[:3, :3]
     k = camera.intrinsics
     z = np.where(local[..., 2] > 1e-3, local[..., 2], np.inf)
-    pixels = np.stack([k.fx * local[..., 0] / z + k.cx, k.fy * local[..., 1] / z + k.cy], axis=-1)
-    inside = (local[..., 2] > 1e-3) & (pixels > 0).all(axis=-1) & (pixels < [k.width, k.height]).all(axis=-1)
-    return pixels, inside
+    u, v = k.fx * local[..., 0] / z + k.cx, k.fy * local[..., 1] / z + k.cy
+    inside = (local[..., 2] > 1e-3) & (u > 0) & (v > 0) & (u < k.width) & (v < k.height)
+    return np.stack([u, v], axis=-1), np.asarray(inside)
 
 
 def _slopes(camera: Camera) -> Float[np.ndarray, "k1"]:

@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.artefacts import Box, DetectedObject
-from diorama_core.geometry.vectors import cells_of
+from diorama_core.geometry.vectors import alike, cells_of
 from diorama_core.scene.values import ArrayValue
 
 _CELL_LAB = np.array([14.0, 8.0, 8.0])
@@ -77,7 +77,7 @@ def cut_patches(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObjec
             continue
         lab = cv2.cvtColor(rgb[y1:y2, x1:x2].astype(np.float32) / np.float32(255.0), cv2.COLOR_RGB2LAB)
         for colour in _common_colours(lab[mask], SETTINGS.main_share):
-            even = (np.abs(lab - colour) < _EVEN_LAB).all(axis=-1).astype(np.uint8)
+            even = alike(lab, colour, _EVEN_LAB).astype(np.uint8)
             count, label = cv2.connectedComponents(even)
             mask_share = np.bincount(label[mask], minlength=count) / np.maximum(
                 np.bincount(label.ravel(), minlength=count), 1

@@ -17,6 +17,7 @@ from jaxtyping import Bool, Float, Float32, Int, UInt8
 
 from diorama_core.architecture.texture.quilting import broad_shading
 from diorama_core.artefacts import DetectedObject
+from diorama_core.geometry.vectors import alike
 from diorama_core.library.taxonomy import RUGS
 
 _CELL_LAB = np.array([14.0, 8.0, 8.0])
@@ -191,7 +192,7 @@ def _with_pattern(
     rows, columns = seen_at
     lab, others = picture[rows, columns].astype(np.float64), []
     is_compared = is_floor[rows, columns]
-    lit_alike = (np.abs(picture - main) < _LIT_LAB).all(axis=-1) & (picture[..., 0] >= main[0] - SETTINGS.shadow_l)
+    lit_alike = alike(picture, main, _LIT_LAB) & (picture[..., 0] >= main[0] - SETTINGS.shadow_l)
     for _ in range(SETTINGS.other_colours):
         left = ~is_compared
         if left.mean() < SETTINGS.min_of_pattern:
@@ -269,14 +270,14 @@ def _main_colour(
     colours, covers, scores = [], [], []
     for cell in _cells(lab, weight):
         cell = _mode(cell, lab, weight)
-        alike = (np.abs(lab - cell) < _CELL_LAB).all(axis=1)
-        spread = _spread(places[alike], weight[alike])
-        middle = np.median(lab[alike], axis=0) if alike.any() else cell
-        shaded = SETTINGS.of_shade * float(weight[contact & ~alike & _shades_of(middle, lab)].sum())
-        touched = (float(weight[contact & alike].sum()) + shaded) / at_feet
+        near = alike(lab, cell, _CELL_LAB)
+        spread = _spread(places[near], weight[near])
+        middle = np.median(lab[near], axis=0) if near.any() else cell
+        shaded = SETTINGS.of_shade * float(weight[contact & ~near & _shades_of(middle, lab)].sum())
+        touched = (float(weight[contact & near].sum()) + shaded) / at_feet
         off = _USUAL_AXES @ (middle * np.array([100.0 / white, 1.0, 1.0]) - _USUAL_LAB)
         colours.append(middle)
-        covers.append(float(weight[alike].sum()) * spread * (SETTINGS.without_contact + touched))
+        covers.append(float(weight[near].sum()) * spread * (SETTINGS.without_contact + touched))
         scores.append(covers[-1] * float(np.exp(-0.5 * (off**2).sum())))
     return _lit(int(np.argmax(scores)), np.array(colours), np.array(covers))
 
@@ -286,7 +287,7 @@ def _mode(
 ) -> Float[np.ndarray, "3"]:
     """Where colours lie densest near a cell's middle: mean shift (Comaniciu and Meer 2002) with a flat kernel."""
     for _ in range(SETTINGS.mean_shifts):
-        near = (np.abs(lab - cell) < SETTINGS.core * _CELL_LAB).all(axis=1)
+        near = alike(lab, cell, SETTINGS.core * _CELL_LAB)
         if not weight[near].sum() > 0.0:
             break
         moved = np.average(lab[near], axis=0, weights=weight[near])
@@ -338,7 +339,7 @@ def _cells(lab: Float[np.ndarray, "n 3"], weight: Float[np.ndarray, "n"]) -> Flo
 
 def _fullest(lab: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
     cell = _cells(lab, np.ones(len(lab)))[0]
-    return np.asarray(np.median(lab[(np.abs(lab - cell) < _CELL_LAB).all(axis=1)], axis=0))
+    return np.asarray(np.median(lab[alike(lab, cell, _CELL_LAB)], axis=0))
 
 
 def _of_material(lab: Float[np.ndarray, "n 3"], main: Float[np.ndarray, "3"]) -> Bool[np.ndarray, "n"]:

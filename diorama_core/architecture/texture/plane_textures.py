@@ -17,6 +17,7 @@ from diorama_core.architecture.texture.level_light import levelled
 from diorama_core.artefacts import SURE_MASK, DetectedObject, Inputs
 from diorama_core.geometry.casting import cast_planes
 from diorama_core.geometry.planes import plane_rectangle
+from diorama_core.geometry.vectors import alike
 from diorama_core.protocols import EmptyRoomFiller
 from diorama_core.scene.types import Architecture, Camera, Plane
 
@@ -277,14 +278,14 @@ def _foreign(
     covered = np.bincount(index.ravel(), weights=share)
     best, median = -1.0, np.median(sample, axis=0)
     for cell in cells[np.argsort(-covered, kind="stable")][:8]:
-        alike = (np.abs(sample - cell * COLOUR_CELL_LAB) < COLOUR_CELL_LAB).all(axis=1)
+        near = alike(sample, cell * COLOUR_CELL_LAB, COLOUR_CELL_LAB)
         likely = float(np.exp(-np.linalg.norm(cell * COLOUR_CELL_LAB - hoped) / EXPECTED_LAB))
-        score = float(share[alike].sum()) * likely
+        score = float(share[near].sum()) * likely
         if score > best:
-            best, median = score, np.median(sample[alike], axis=0)
+            best, median = score, np.median(sample[near], axis=0)
     deviation = np.abs(lab - median)
-    alike = (deviation < 2.0 * COLOUR_CELL_LAB).all(axis=-1)
-    typical = np.median(deviation[alike] if alike.any() else deviation, axis=0)
+    near = alike(lab, median, 2.0 * COLOUR_CELL_LAB)
+    typical = np.median(deviation[near] if near.any() else deviation, axis=0)
     far = np.zeros(seen.shape, np.uint8)
     far[rows, columns] = (deviation > np.maximum(FOREIGN_SPREADS * typical, FOREIGN_MIN_LAB)).any(axis=-1)
     compact = cv2.morphologyEx(far, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
