@@ -13,6 +13,7 @@ from PIL import Image
 from playwright.sync_api import expect
 
 from diorama_core.artefacts import FurtherPhoto
+from diorama_core.multiview import adding
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.project.further_photos import save_photos
 from tests.app.small_room import PlainLibrary, make_project
@@ -24,6 +25,12 @@ from tests.multiview.two_photos import SMALL, project_of, two_photos, with_camer
 
 pytest.importorskip("pycolmap", reason="needs pycolmap (pip install 'diorama[photos]')")
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+
+@pytest.fixture(autouse=True)
+def _few_distances(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three distances between the cameras are tried, not thirteen: the tests ask what the page makes of them."""
+    monkeypatch.setattr(adding, "DISTANCES", (0.8, 1.0, 1.25))
 
 
 def test_a_photo_of_the_same_room_is_added_looked_through_and_undone(

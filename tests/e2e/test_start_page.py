@@ -26,16 +26,26 @@ pytestmark = pytest.mark.browser
 
 
 @pytest.fixture
+def library() -> str | PlainLibrary:
+    """The built-in shapes, of which the example is in the view behind; it takes a while to be drawn."""
+    return "built-in"
+
+
+@pytest.fixture
 def newcomer(
-    context: BrowserContext, serve: Callable[..., Running], request: pytest.FixtureRequest
+    context: BrowserContext,
+    serve: Callable[..., Running],
+    library: str | PlainLibrary,
+    request: pytest.FixtureRequest,
 ) -> Iterator[EditorPage]:
-    page = EditorPage.open(context, serve(), newcomer=True)
+    page = EditorPage.open(context, serve(library=library), newcomer=True)
     yield page
     keep_picture(page, request.node.name, failed=request.node.stash[FAILED])
     page.page.close()
     assert not page.errors, page.errors
 
 
+@pytest.mark.parametrize("library", [PlainLibrary()], ids=["plain"])
 def test_an_empty_room_is_begun_and_the_tour_comes_once(newcomer: EditorPage) -> None:
     page, begun = newcomer.page, newcomer.page.locator("#dio-start")
     expect(begun).to_be_visible(timeout=30_000)
@@ -61,6 +71,7 @@ def test_an_empty_room_is_begun_and_the_tour_comes_once(newcomer: EditorPage) ->
     expect(tour).to_have_count(0)
 
 
+@pytest.mark.parametrize("library", [PlainLibrary()], ids=["plain"])
 def test_what_is_no_picture_is_said_and_the_start_page_stays(newcomer: EditorPage, tmp_path: Path) -> None:
     page, begun = newcomer.page, newcomer.page.locator("#dio-start")
     expect(begun).to_be_visible(timeout=30_000)
