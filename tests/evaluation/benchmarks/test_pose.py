@@ -27,7 +27,7 @@ from diorama_core.evaluation.benchmarks.pose_comparison import (
 )
 from diorama_core.evaluation.benchmarks.pose_tables import comparison_table
 from diorama_core.pose import RenderAndCompare
-from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePose
+from diorama_core.pose.correspondence.solvers import CorrespondencePose
 from diorama_core.render.templates import TemplateGrid
 from diorama_core.synthesis import render_truth, sample_cameras
 from diorama_core.synthesis.layout_rooms import box_library, generate_room
@@ -131,10 +131,6 @@ def test_a_room_that_fails_counts_for_every_solver(view, library, solvers, monke
     after = dict(bench.groups_after)
     assert after
     assert all(group.every == 0 for group in after.values())
-
-
-def test_the_views_are_the_papers() -> None:
-    assert len(HALF_GRID) == 180
 
 
 def test_groups_are_counted_after_the_papers_layout_too(view, library) -> None:
