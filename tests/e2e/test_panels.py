@@ -127,7 +127,8 @@ def test_the_layout_is_optimised_before_your_eyes_and_undone(editor: EditorPage,
 
 
 def test_cancelling_the_optimiser_restores_everything(editor: EditorPage, monkeypatch: pytest.MonkeyPatch) -> None:
-    session, begin, pressed = editor.running.session, editor.running.session.jobs.start, threading.Event()
+    session, begin = editor.running.session, editor.running.session.jobs.start
+    reported, pressed = threading.Event(), threading.Event()
     before = session.scene
 
     def held(kind: JobKind, title: str, work: Callable[[Progress], None]) -> None:
@@ -136,6 +137,7 @@ def test_cancelling_the_optimiser_restores_everything(editor: EditorPage, monkey
         def slow(progress: Progress) -> None:
             def told(event: ProgressEvent) -> None:
                 progress.on_event(event)
+                reported.set()
                 pressed.wait(60.0)
 
             work(replace(progress, on_event=told))
@@ -147,6 +149,7 @@ def test_cancelling_the_optimiser_restores_everything(editor: EditorPage, monkey
     editor.page.get_by_label("Recipe").click()
     editor.page.get_by_role("option", name="All in one").click()
     editor.button("Optimise layout").click()
+    editor.until(reported.is_set, "it runs: cancelled earlier, it ends before its wish to stop is seen")
     editor.button("Cancel").click()
     editor.until(lambda: session.jobs.status is not None and session.jobs.status.cancelling, "it is asked to stop")
     pressed.set()
