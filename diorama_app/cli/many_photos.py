@@ -11,10 +11,12 @@ import sys
 from typing import TYPE_CHECKING
 
 from diorama_app.cli.arguments import print_note, progress_bar
-from diorama_core.errors import InputError
+from diorama_core.errors import Cancelled, DioramaError, InputError
 from diorama_core.io.text import number_of
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from diorama_app.projects.folder_build import PhotoResult
     from diorama_app.projects.options import BuildOptions
 
@@ -22,34 +24,56 @@ REPORT = "report.html"
 
 
 def build_folder(a: argparse.Namespace, options: BuildOptions) -> None:
-    """Build every photo of the folder `a.image`, and write the report.
+    """Build every photo of the folder `a.image`, and write the report; of a folder of homes, home by home.
 
     Raises:
-        InputError: an option is for one photo, or photos failed; the reasons are on stderr and in the report.
+        InputError: an option is for one photo, or photos or homes failed; the reasons are on stderr and in the report.
     """
+    from diorama_app.projects.folder_home import homes_of
+
+    check_options_of_one_photo(a)
+    homes, failed = homes_of(a.image), []
+    for home in homes:
+        try:
+            _build_photos_of(home, a.output if home == a.image else a.output / home.name, a, options)
+        except DioramaError as error:
+            if home == a.image or isinstance(error, Cancelled):
+                raise
+            print(f"failed: {home.name}: {error}", file=sys.stderr)
+            failed.append(home.name)
+    if failed:
+        raise InputError(f"{len(failed)} of {len(homes)} homes failed: {', '.join(failed)}")
+
+
+def _build_photos_of(folder: Path, output: Path, a: argparse.Namespace, options: BuildOptions) -> None:
     from diorama_app.projects.folder_build import build_photos, photos_of
+    from diorama_app.projects.folder_home import FOLDER, join_rooms, shared_doors
     from diorama_app.projects.folder_report import write_report
     from diorama_core.workers import workers
 
-    check_options_of_one_photo(a)
-    photos, remarks = photos_of(a.image)
+    doors = shared_doors(folder)
+    photos, remarks = photos_of(folder)
     for remark in remarks:
         print_note(remark)
     pool = workers(a.ray, a.workers if a.workers is not None or a.ray else max((os.cpu_count() or 1) // 2, 1))
     with progress_bar() as progress:
-        results = build_photos(photos, options, a.output.absolute(), pool, progress)
-    write_report(a.output.absolute() / REPORT, results, remarks)
+        results = build_photos(photos, options, output.absolute(), pool, progress)
+    write_report(output.absolute() / REPORT, results, remarks)
     failed = [r for r in results if r.error]
     for result in failed:
         print(f"failed: {result.photo.name}: {result.error}", file=sys.stderr)
     if a.json:
-        print(json.dumps({"report": str(a.output / REPORT), "photos": [_as_json(r) for r in results]}))
+        print(json.dumps({"report": str(output / REPORT), "photos": [_as_json(r) for r in results]}))
     else:
         kept = sum(r.kept for r in results)
         before = f" ({kept} were finished before)" if kept else ""
-        print(f"{a.output / REPORT}: {len(results) - len(failed)} of {len(results)} photos became scenes{before}")
+        print(f"{output / REPORT}: {len(results) - len(failed)} of {len(results)} photos became scenes{before}")
     if failed:
         raise InputError(f"{len(failed)} of {len(results)} photos failed; the reasons are above and in the report")
+    if doors:
+        home = join_rooms({r.project.name: r.project for r in results}, doors, output.absolute() / FOLDER)
+        if not a.json:
+            print(f"{output / FOLDER}: a home of {number_of(len(home.load_scene().rooms), 'room')}")
 
 
 def check_options_of_one_photo(a: argparse.Namespace) -> None:

@@ -87,10 +87,10 @@ def _join(a: argparse.Namespace) -> None:
     folder, room = _folder(a, a.project), _folder(a, a.other)
     with ProjectLock(folder, "diorama project join"):
         project, other = Project.open(folder), Project.open(room)
-        scene, textures = join_project(project, project.load_scene(), other, a.door, a.to, wall_m=a.wall)
+        made, textures = join_project(project, project.load_scene(), other, a.door, a.to, wall_m=a.wall)
         project.save_textures(textures)
-        project.save_scene(scene)
-    _say(a, folder, f"a home of {number_of(len(scene.rooms), 'room')}")
+        project.save_scene(made.scene)
+    _say(a, folder, f"a home of {number_of(len(made.scene.rooms), 'room')}")
 
 
 def _rooms(a: argparse.Namespace) -> None:

@@ -107,11 +107,11 @@ class HomePanel:
         if session.project is None or self._joining is None:
             raise EditRefused(_("choose a project to join first"))
         other = Project.open(self._joining)
-        scene, pictures = join_project(session.project, session.scene, other, door, self._door)
+        made, pictures = join_project(session.project, session.scene, other, door, self._door)
         if isinstance(session.library, ProjectShapes):
             session.library.show(session.project.shapes_folder)
         session.add_textures(dict(pictures))
-        session.edit(_("join {name}").format(name=other.name), lambda s: scene, by=client)
+        session.edit(_("join {name}").format(name=other.name), lambda s: made.scene, by=client)
         self._joining, self._door = None, ""
 
 

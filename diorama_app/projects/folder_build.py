@@ -19,7 +19,7 @@ from typing import Any
 from PIL import Image
 
 from diorama_app.projects.options import BuildOptions, PhotoFiles, build_files
-from diorama_core.errors import DioramaError, InputError, ProjectError
+from diorama_core.errors import DioramaError, InputError, ProjectError, SphericalPhotoError
 from diorama_core.io.atomic import write_atomically, write_json
 from diorama_core.io.bounded import read_json, shortened
 from diorama_core.io.code_key import code_key
@@ -240,7 +240,14 @@ def build_photo(photo: FolderPhoto, options: BuildOptions, output: Path) -> Phot
         return PhotoResult(photo.photo, project, finished, kept=True)
     (project / RECORD).unlink(missing_ok=True)
     warnings: list[str] = []
-    room = build_files(photo.files(), options, project, Progress(), warnings.append)
+    try:
+        room = build_files(photo.files(), options, project, Progress(), warnings.append)
+    except SphericalPhotoError:
+        import diorama_core as diorama
+        from diorama_app.projects.posed_build import build_sphere_photo
+
+        warnings += build_sphere_photo(photo.files(), options, project, Progress()).notes
+        room = diorama.load(project)
     from diorama_app.projects.report import build_report  # the recogniser, which the editor starts without
 
     report = build_report(room, ("scene.json",))

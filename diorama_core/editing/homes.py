@@ -39,6 +39,8 @@ class JoinedHome:
     scene: Scene
     textures: Mapping[str, str]
     """What the pictures of the joined scene are called in the home, by what they were."""
+    ids: Mapping[str, str]
+    """What everything of the joined scene is called in the home, its door too, by what it was."""
 
 
 def joined(
@@ -102,7 +104,7 @@ def joined(
         supports=(*home.supports, *supports),
         rooms=_counted_from_lowest((*home.rooms, *rooms)),
     )
-    return JoinedHome(scene, textures)
+    return JoinedHome(scene, textures, {**called.ids, other_door: door})
 
 
 def as_one_door(home: Scene, other: Scene, door: str, other_door: str) -> tuple[Scene, Scene]:
@@ -139,8 +141,15 @@ def placed_at_door(
 
 
 def join_project(
-    project: Project, scene: Scene, other: Project, door: str, other_door: str, *, wall_m: float = USUAL_WALL_M
-) -> tuple[Scene, Mapping[str, UInt8[np.ndarray, "_ _ 3"]]]:
+    project: Project,
+    scene: Scene,
+    other: Project,
+    door: str,
+    other_door: str,
+    *,
+    wall_m: float = USUAL_WALL_M,
+    name: str | None = None,
+) -> tuple[JoinedHome, Mapping[str, UInt8[np.ndarray, "_ _ 3"]]]:
     """A project's scene with another project's beside it (`joined`), and the pictures that came with it.
 
     Shapes that the other project brought itself are copied into the project.
@@ -152,6 +161,7 @@ def join_project(
         door: id of the door in the home.
         other_door: id of the same door in the other project.
         wall_m: thickness of the wall between them.
+        name: of the scene where it is one room; the project's where None.
 
     Raises:
         EditRefused: as `joined`, or the two use different libraries.
@@ -163,10 +173,11 @@ def join_project(
             "build both with one library"
         )
     added = other.load_scene()
-    made = joined(scene, added, door, other_door, names=(project.name, other.name), wall_m=wall_m)
+    made = joined(scene, added, door, other_door, names=(name or project.name, other.name), wall_m=wall_m)
     if other.shapes_folder.is_dir():
         project.take_shapes(other)
-    return made.scene, {made.textures[name]: picture for name, picture in other.textures(added).items()}
+    pictures = other.textures(added)  # those of its door went with it
+    return made, {name: pictures[texture] for texture, name in made.textures.items() if texture in pictures}
 
 
 def draw_room_of_home(scene: Scene, outline: Float[np.ndarray, "n 2"], storey: int = 0) -> Scene:

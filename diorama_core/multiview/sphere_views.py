@@ -39,6 +39,8 @@ class SphereViewsSettings:
     """Share of the smaller of two boxes of one kind in the other from which they are one thing, cut in one view."""
     seam: float = 0.005
     """Boxes that end so near the picture's sides, as a share of its width, may go on beyond the seam."""
+    min_px: float = 2.0
+    """Smallest side of a box."""
     widest_deg: float = 160.0
     """Widest half angle of an object: a wider one is below the camera or behind it, and no view shows it."""
 
@@ -125,7 +127,8 @@ def on_picture(
         away = np.column_stack([across * np.cos(azimuth), across * np.sin(azimuth), np.sin(elevation)])
         at = sphere_pixels(away @ R_room_sphere, size[0])
         (x1, x2), (y1, y2) = at[:2, 0], np.clip(at[2:, 1], 0.0, size[1])
-        sides = [(x1, x2)] if x1 < x2 else [(x1, float(size[0])), (0.0, x2)]
+        parts = [(x1, x2)] if x1 < x2 else [(x1, float(size[0])), (0.0, x2)]
+        sides = [part for part in parts if part[1] - part[0] >= SETTINGS.min_px]
         boxes += [replace(thing.labelled, box=(float(a), float(y1), float(b), float(y2))) for a, b in sides]
     return tuple(boxes)
 
@@ -158,7 +161,7 @@ class SphereView:
             float(np.clip(k.cy - k.fy * np.tan(np.clip(e, -1.5, 1.5)) / middle, 0, k.height))
             for e in (thing.high, thing.low)
         )
-        if y2 - y1 < 2.0 or x2 - x1 < 2.0:
+        if min(y2 - y1, x2 - x1) < SETTINGS.min_px:
             return None
         return replace(thing.labelled, box=(float(x1), y1, float(x2), y2))
 
