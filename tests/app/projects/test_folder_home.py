@@ -27,7 +27,9 @@ def rooms(tmp_path: Path) -> dict[str, Path]:
         "bath": with_door(furnished_scene(), "door_1", "wall_3", 0.2),
     }
     door = scenes["study"].object("door_1")
-    painted = replace(door, label="front door", photo_materials=(PhotoMaterial("panel", (0.5, 0.5, 0.5), texture="paint"),))
+    painted = replace(
+        door, label="front door", photo_materials=(PhotoMaterial("panel", (0.5, 0.5, 0.5), texture="paint"),)
+    )
     others = [o for o in scenes["study"].objects if o is not door]
     scenes["study"] = replace(scenes["study"], objects=(*others, painted))
     for name, scene in scenes.items():
