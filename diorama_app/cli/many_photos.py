@@ -46,8 +46,9 @@ def build_folder(a: argparse.Namespace, options: BuildOptions) -> None:
 
 
 def _build_photos_of(folder: Path, output: Path, a: argparse.Namespace, options: BuildOptions) -> None:
-    from diorama_app.projects.folder_build import build_photos, photos_of
+    from diorama_app.projects.folder_build import build_photos
     from diorama_app.projects.folder_home import FOLDER, join_rooms, shared_doors
+    from diorama_app.projects.folder_photos import photos_of
     from diorama_app.projects.folder_report import write_report
     from diorama_core.workers import workers
 
@@ -125,7 +126,7 @@ def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
         UnavailableError: cameras are to be found and pycolmap is not installed.
     """
     from diorama_app.cli.many_photos import check_options_of_one_photo
-    from diorama_app.projects.folder_build import photos_of
+    from diorama_app.projects.folder_photos import photos_of
     from diorama_app.projects.posed_build import build_posed_photos, poses_from_photos
     from diorama_core.multiview.posed_photos import read_poses
 

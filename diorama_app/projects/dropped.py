@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from diorama_app.projects.folder_build import DATA, PHOTOS
+from diorama_app.projects.folder_photos import DATA, PHOTOS
 from diorama_app.projects.packing import is_packed
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.importing.array_clouds import is_array_cloud

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from diorama_app.projects.folder_build import PHOTOS
+from diorama_app.projects.folder_photos import PHOTOS
 from diorama_core.editing.homes import DOOR, join_project
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.io.bounded import read_json

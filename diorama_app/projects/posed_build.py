@@ -13,7 +13,7 @@ from jaxtyping import UInt8
 from PIL import Image
 
 import diorama_core as diorama
-from diorama_app.projects.folder_build import FolderPhoto
+from diorama_app.projects.folder_photos import FolderPhoto
 from diorama_app.projects.options import BuildOptions, PhotoFiles
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import InputError, ProjectError

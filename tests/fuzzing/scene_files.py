@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import ValidationError
 
-from diorama_app.projects.folder_build import read_camera
+from diorama_app.projects.folder_photos import read_camera
 from diorama_core.editing.positioning import Positioner
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.export.gathering import ExportOptions, gather

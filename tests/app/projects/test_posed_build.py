@@ -9,7 +9,7 @@ from PIL import Image
 
 from diorama_app.cli import main
 from diorama_app.cli.many_photos import build_posed
-from diorama_app.projects.folder_build import photos_of
+from diorama_app.projects.folder_photos import photos_of
 from diorama_app.projects.options import BuildOptions, PhotoFiles
 from diorama_app.projects.posed_build import build_posed_photos, build_sphere_photo
 from diorama_core.errors import InputError
