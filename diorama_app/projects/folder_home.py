@@ -35,7 +35,7 @@ class SharedDoor:
 
     @property
     def turned(self) -> SharedDoor:
-        """The same door, named from the other room."""
+        """This door, named from the other room."""
         return SharedDoor(self.rooms[::-1], self.ids[::-1])
 
 

@@ -93,4 +93,4 @@ def test_every_project_of_the_editor_is_begun_in_one_place() -> None:
     """Elsewhere nobody looks whether it opens again; the command line has its own folders."""
     app = Path(diorama_app.__file__).parent
     makers = {p.relative_to(app).as_posix() for p in app.rglob("*.py") if "Project.create(" in p.read_text()}
-    assert makers == {"projects/begin.py", "projects/posed_build.py", "cli/importing.py"}
+    assert makers == {"projects/begin.py", "projects/folder_home.py", "projects/posed_build.py", "cli/importing.py"}
