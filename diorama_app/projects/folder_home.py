@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from diorama_app.projects.folder_photos import PHOTOS
-from diorama_core.editing.homes import DOOR, join_project
+from diorama_core.editing.homes import join_project
 from diorama_core.errors import EditRefused, InputError
+from diorama_core.geometry.openings import DOOR
 from diorama_core.io.bounded import read_json
 from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project
