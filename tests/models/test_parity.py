@@ -40,6 +40,10 @@ def photo(request: pytest.FixtureRequest) -> np.ndarray:
     return _photo(*request.param)
 
 
+ONE_SHAPE = pytest.mark.parametrize("photo", [(120, 200)], ids=["wide"], indirect=True)
+"""For networks whose pictures are stretched to a square, whatever their shape."""
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("graphs")
@@ -107,6 +111,7 @@ def _drawn_alike(mask: np.ndarray, expected: torch.Tensor) -> None:
     assert 0.001 < mask.mean() < 0.999
 
 
+@ONE_SHAPE
 def test_sam2_draws_the_same_masks(sam2: tuple[Any, Path, Path], photo: np.ndarray) -> None:
     model, encoder, decoder = sam2
     height, width = photo.shape[:2]
@@ -126,6 +131,7 @@ def test_sam2_draws_the_same_masks(sam2: tuple[Any, Path, Path], photo: np.ndarr
         _drawn_alike(prompted.mask, torch.nn.functional.interpolate(logits, (height, width), mode="bilinear")[0, 0] > 0)
 
 
+@ONE_SHAPE
 def test_sam3s_tracker_draws_the_same_masks(sam3: tuple[Any, Path, Path], photo: np.ndarray) -> None:
     model, encoder, decoder = sam3
     height, width = photo.shape[:2]
@@ -190,6 +196,7 @@ def test_slimsam_draws_the_same_masks(slimsam: tuple[Any, Path, Path], photo: np
     _drawn_alike(found.mask, masks[0][0, best])
 
 
+@ONE_SHAPE
 @pytest.mark.parametrize("block", [None, 0, 2])
 def test_dinov2_reads_the_same_features_from_any_block(
     dinov2: tuple[Any, Path], photo: np.ndarray, block: int | None
@@ -236,6 +243,7 @@ def test_openclip_embeds_the_same(tmp_path: Path, photo: np.ndarray) -> None:
     assert np.linalg.norm(shape.shape([photo])) == pytest.approx(1.0, abs=1e-5)
 
 
+@ONE_SHAPE
 def test_birefnet_gives_the_same_probabilities_and_runs_twice(tmp_path: Path, photo: np.ndarray) -> None:
     network, graph = tiny_networks.birefnet(tmp_path / "model.onnx")
     facade = Foreground(graph, pool=SessionPool())
@@ -254,6 +262,7 @@ def test_birefnet_gives_the_same_probabilities_and_runs_twice(tmp_path: Path, ph
     np.testing.assert_array_equal(mask, first | (facade.probability(painted) > 0.5))
 
 
+@ONE_SHAPE
 def test_mvanet_gives_the_same_probabilities(tmp_path: Path, photo: np.ndarray) -> None:
     """Its authors' prediction: stretched to 1024, ImageNet statistics, the last output's sigmoid, stretched back."""
     network, graph = tiny_networks.mvanet(tmp_path / "model.onnx")
@@ -267,6 +276,7 @@ def test_mvanet_gives_the_same_probabilities(tmp_path: Path, photo: np.ndarray) 
     assert np.ptp(expected) > 0.1
 
 
+@ONE_SHAPE
 def test_lama_fills_the_hole_and_nothing_else(tmp_path: Path, photo: np.ndarray) -> None:
     network, graph = tiny_networks.lama(tmp_path / "model.onnx")
     hole = np.zeros(photo.shape[:2], dtype=bool)
