@@ -12,13 +12,13 @@ from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.architecture.single_view.stage import PhotoRoom
 from diorama_core.progress import Progress
-from diorama_core.provenance import RoomSource
+from diorama_core.provenance import RoomMethod, RoomSource
 from tests import synthetic_rooms
 from tests.synthetic_rooms import box_room, cuboid, shoot
 
 SOLVERS = {"closed": PlanarRoom(), "plainrecon": PlainRecon(), "photo": PhotoRoom()}
 CASES = (
-    "no floor seen", "one plane", "corridor", "mirror", "all masked", "empty depth", "fifty points",
+    "no floor seen", "floor only", "one plane", "corridor", "mirror", "all masked", "empty depth", "fifty points",
     "not a number", "a wall before the nose",
 )  # fmt: skip
 
@@ -43,6 +43,8 @@ def seen(case):
         return shoot(look(3, 6), box_room(-0.6, 0.6, 14.0, 2.4))
     if case == "a wall before the nose":
         return shoot(look(0, 5), box_room(-2.0, 2.0, 0.6, 2.6))
+    if case == "floor only":
+        return _measured(shot, np.where(rows > 200, depth, 0))
     if case == "one plane":
         return _measured(shot, np.where((rows < 75) & (np.abs(columns - 160) < 30), depth, 0))
     if case == "mirror":
@@ -88,6 +90,7 @@ def test_the_source_states_what_was_found(case, floor, walls):
     source = estimate.source
     assert (source.floor_found, source.walls_found > 0) == (floor, walls)
     assert source.walls_assumed > 0 or walls
+    assert source.method is RoomMethod.DEPTH_PLANES
 
 
 def test_a_mirror_opens_no_room_behind_the_wall():
