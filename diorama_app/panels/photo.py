@@ -21,7 +21,7 @@ from diorama_app.projects.begin import begin_project, keep_given
 from diorama_app.projects.reading_again import upload_again, with_depth
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction import build_job as work
-from diorama_app.reconstruction.dropped_photos import build_all_round, build_all_round_again
+from diorama_app.reconstruction.dropped_photos import build_all_round, check_all_round
 from diorama_app.reconstruction.networks import (
     NO_DETECTOR,
     PROPOSALS_ONLY,
@@ -123,10 +123,14 @@ class PhotoPanel:
             self._session.visit(client, project, sentences(read.warnings[:3]))
 
         def ask(unknown: AmbiguousDepthError | SphericalPhotoError) -> None:
-            if isinstance(unknown, SphericalPhotoError):
+            if not isinstance(unknown, SphericalPhotoError):
+                ask_depth(client, unknown, lambda answer: self.begin(upload.answered(answer)))
+                return
+            check_all_round(upload)
+            if client.preferences.build_at_once or upload.boxes is not None:
                 build_all_round(client, upload)
             else:
-                ask_depth(client, unknown, lambda answer: self.begin(upload.answered(answer)))
+                self.begin(replace(upload, sphere=True))
 
         self._session.reader.read(upload, client.id, client.post, done, ask)
         self._announce(upload.name, upload.photo)
@@ -242,7 +246,7 @@ class PhotoPanel:
             "build at once": self._build_found,
             "by hand": self._mark_by_hand,
             "join": lambda: join_photo(client),
-            "build sphere": lambda: build_all_round_again(client),
+            "build sphere": self._build_whole_room,
             "named": lambda: boxes.name(action.pair[1]),
             "name": lambda: boxes.name(action.arg),
         }
@@ -263,6 +267,12 @@ class PhotoPanel:
         inputs = self._session.inputs
         if inputs is not None:
             work.build_found(self._session, self._boxes.sure(inputs))
+
+    def _build_whole_room(self) -> None:
+        """Build from the 360 degree photo that is chosen."""
+        further = self._client.further_photo
+        if further is not None:
+            work.build_whole_room(self._session, further.inputs)
 
     def _build_if_awaited(self, inputs: Inputs) -> None:
         """Build what was found in a photo that was just uploaded; where nothing is sure, a person marks it."""

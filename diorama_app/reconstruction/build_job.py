@@ -10,6 +10,7 @@ import contextlib
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from diorama_app.reconstruction.networks import can_find_furniture
@@ -26,6 +27,7 @@ from diorama_core.scene.types import Camera, Scene
 
 if TYPE_CHECKING:
     from diorama_core.multiview.rebuilding import Rebuilt  # the whole pipeline; opening a project does without it
+    from diorama_core.multiview.sphere_scene import SphereScene
     from diorama_core.pipeline.run import Built
 
 
@@ -68,7 +70,10 @@ class NewScene:
 
 def ready_to_build(inputs: Inputs | None) -> bool:
     """Whether a scene with objects can be built."""
-    return inputs is not None and (bool(inputs.boxes) or inputs.instances is not None or can_find_furniture())
+    if inputs is None:
+        return False
+    given = bool(inputs.boxes) or inputs.instances is not None or bool(inputs.photo.equirectangular)
+    return given or can_find_furniture()
 
 
 def builds_unasked(session: EditorSession) -> bool:
@@ -89,7 +94,8 @@ def build_found(session: EditorSession, boxes: Sequence[LabelledBox]) -> None:
     """
     inputs = session.inputs
     if inputs is not None:
-        given = replace(inputs, boxes=(*inputs.boxes, *boxes))
+        # Views of a 360 degree photo show more than the photo itself: what they show is found by the build.
+        given = inputs if inputs.photo.equirectangular else replace(inputs, boxes=(*inputs.boxes, *boxes))
         start_build(session, given, _(UNASKED), _("build the scene"))
 
 
@@ -136,6 +142,9 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
         label: what the undo step is called.
         message: what is said at the end instead of the number of objects.
     """
+    if inputs.photo.equirectangular:
+        build_whole_room(session, inputs)
+        return
     session.need_writable()
     project = session.project
     if project is None:
@@ -164,6 +173,67 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
 
     session.interrupted = False
     session.jobs.start("build", title, work)
+
+
+def build_whole_room(session: EditorSession, sphere: Inputs) -> None:
+    """Build the room of the open project from one of its photos, a 360 degree photo, as one undo step.
+
+    Args:
+        session: where.
+        sphere: the photo with its boxes; without any, what is found in its views is used.
+
+    Raises:
+        EditRefused: the project is read-only.
+    """
+    session.need_writable()
+    project, before, library = session.project, session.scene, session.offered
+    if project is None:
+        raise EditRefused("no project is open")
+
+    def work(progress: Progress) -> None:
+        from diorama_core.layout.recipes import recipe
+        from diorama_core.multiview.sphere_scene import build_sphere
+        from diorama_core.pipeline.presets import stages_for
+        from diorama_core.project.further_photos import note_placed
+
+        session.autosave.flush()
+        layout = recipe("feasible", library, depth_measured=True)
+        with _noted(project):
+            built = build_sphere(
+                sphere.photo, sphere.boxes, library, lambda given: stages_for("auto", given, library), layout, progress
+            )
+            note_placed(project, built.room.scene)
+        session.ui_thread.post(lambda: _show_whole_room(session, project, before, sphere, built))
+
+    for client in session.clients.values():
+        client.view.canvas.close()
+    session.jobs.start("build", _("Building the whole room of a 360 degree photo"), work)
+
+
+def _show_whole_room(
+    session: EditorSession, project: Project, before: Scene, sphere: Inputs, built: SphereScene
+) -> None:
+    if session.project != project:
+        return  # another project was opened here meanwhile
+    if session.scene is not before:
+        session.notice_all(_("The scene was changed while the room was built, so it stays as it is. Build it again."))
+        return
+    session.add_textures(dict(built.room.textures))
+    session.notes = shown_notes(built.room.notes)
+    main, further = built.views[0], built.further_photos(sphere)
+    known = {Path(n).stem for n in built.names} | {p.name for p in further}
+    others = [replace(p, camera=None, seen=()) for p in session.further_photos if p.name not in known]
+    session.commit(
+        _("build the whole room"),
+        built.room.scene,
+        selection=(),
+        inputs=replace(main.inputs, intrinsics=main.camera.intrinsics),
+        further=(*further, *others),
+    )
+    for client in session.clients.values():
+        client.open_tab("Scene")
+    session.view.show_whole_room()
+    session.notice_all(counted(built.room.scene), "good")
 
 
 def _with_others(

@@ -14,22 +14,16 @@ from diorama_app.projects.dropped import MAX_BYTES, DroppedPhoto, Reading
 from diorama_app.projects.dropped_files import files_of, upload_of
 from diorama_app.projects.folder_photos import FolderPhoto
 from diorama_app.projects.uploads import Upload, decoded
-from diorama_app.reconstruction.build_job import counted
 from diorama_app.session.client import Client
-from diorama_app.session.project_contents import shown_notes
 from diorama_app.strings import _
-from diorama_core.artefacts import FurtherPhoto
-from diorama_core.errors import DioramaError, EditRefused, InputError
+from diorama_core.errors import DioramaError, InputError
 from diorama_core.io.contained import unpacked
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.progress import Progress
-from diorama_core.project.further_photos import note_placed
 from diorama_core.project.storage import Project
-from diorama_core.scene.types import Scene
 
 if TYPE_CHECKING:
     from diorama_app.projects.posed_build import PosedBuild
-    from diorama_core.multiview.sphere_scene import SphereScene  # the pipeline, without which the editor opens
 
 
 def begin_each(client: Client, name: str, content: bytes, reading: Reading) -> None:
@@ -103,19 +97,20 @@ def build_one_room(client: Client, name: str, content: bytes, reading: Reading) 
     client.close_dialog()
 
 
+def check_all_round(upload: Upload) -> None:
+    """Raise `InputError` where something came with a 360 degree photo that is not used with one."""
+    for name, given in (("depth", upload.depth), ("masks", upload.masks)):
+        if given is not None:
+            raise InputError(f"{upload.name} is a 360 degree photo, with which {name} is not used; leave it out")
+
+
 def build_all_round(client: Client, upload: Upload) -> None:
     """Build one project of a 360 degree photo, and open it.
 
     Args:
         client: the browser that asked.
         upload: the photo, with boxes where they came with it.
-
-    Raises:
-        InputError: something came with it that is not used.
     """
-    for name, given in (("depth", upload.depth), ("masks", upload.masks)):
-        if given is not None:
-            raise InputError(f"{upload.name} is a 360 degree photo, with which {name} is not used; leave it out")
     session = client.session
 
     def work(progress: Progress) -> None:
@@ -141,66 +136,6 @@ def build_all_round(client: Client, upload: Upload) -> None:
 
     session.jobs.start("build", _("Building the whole room of a 360 degree photo"), work)
     client.close_dialog()
-
-
-def build_all_round_again(client: Client) -> None:
-    """Build the room of the chosen 360 degree photo from the boxes in it, as one undo step.
-
-    Args:
-        client: the browser that asked.
-
-    Raises:
-        EditRefused: the project is read-only, or the scene was changed while it was built.
-        InputError: no 360 degree photo with boxes is chosen.
-    """
-    session, sphere = client.session, client.further_photo
-    if sphere is None or not sphere.inputs.boxes:
-        raise InputError("mark the furniture in the 360 degree photo first")
-    session.need_writable()
-    project, before, library = session.project, session.scene, session.offered
-    if project is None:
-        raise EditRefused("no project is open")
-    client.view.canvas.close()
-
-    def work(progress: Progress) -> None:
-        from diorama_core.layout.recipes import recipe  # the pipeline, without which the editor opens
-        from diorama_core.multiview.sphere_scene import build_sphere
-        from diorama_core.pipeline.presets import stages_for
-
-        session.autosave.flush()
-        built = build_sphere(
-            sphere.inputs.photo,
-            sphere.inputs.boxes,
-            library,
-            lambda given: stages_for("auto", given, library),
-            recipe("feasible", library, depth_measured=True),
-            progress,
-        )
-        note_placed(project, built.room.scene)
-        client.post(lambda: _show_all_round(client, project, before, sphere, built))
-
-    session.jobs.start("build", _("Building the whole room of a 360 degree photo"), work)
-
-
-def _show_all_round(client: Client, project: Project, before: Scene, sphere: FurtherPhoto, built: SphereScene) -> None:
-    session = client.session
-    if session.project != project:
-        return  # another project was opened here meanwhile
-    if session.scene is not before or not any(p is sphere for p in session.further_photos):
-        raise EditRefused("the scene was changed while the room was built, so it stays as it is; build it again")
-    session.add_textures(dict(built.room.textures))
-    session.notes = shown_notes(built.room.notes)
-    main = built.views[0]
-    session.commit(
-        _("build the whole room"),
-        built.room.scene,
-        by=client,
-        selection=(),
-        inputs=replace(main.inputs, intrinsics=main.camera.intrinsics),
-        further=built.further_photos(sphere.inputs),
-    )
-    session.view.show_whole_room()
-    session.notice_all(counted(built.room.scene), "good")
 
 
 def _check_photos(reading: Reading, files: Mapping[str, bytes]) -> None:

@@ -7,10 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_app.reconstruction.build_job import NewScene, show_built, start_build
+from diorama_app.projects.begin import begin_project
+from diorama_app.projects.uploads import Upload, decoded
+from diorama_app.reconstruction.build_job import NewScene, build, show_built, start_build
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox
+from diorama_core.io.limited import LimitedProcess
 from diorama_core.multiview.rebuilding import Rebuilt
 from diorama_core.pipeline.run import Built
 from diorama_core.project import build as build_module
@@ -18,6 +21,7 @@ from diorama_core.project.storage import Project
 from diorama_core.scene.types import Camera, Scene
 from tests.app.small_room import photo_camera, plain_photo
 from tests.built import built_scene
+from tests.multiview.spheres import sphere_with_wardrobe
 from tests.waiting import until
 
 
@@ -127,3 +131,30 @@ def test_who_was_marking_sees_the_scene_after_a_build(session: EditorSession, cl
     show_built(session, session.project, made, label="build the scene", inputs_before=session.inputs)
     assert opened == ["Scene"]
     assert not client.view.canvas.is_open
+
+
+@pytest.mark.slow
+def test_a_360_degree_photo_that_was_marked_becomes_a_room_with_its_views(
+    session: EditorSession, client: Client
+) -> None:
+    picture, boxes = sphere_with_wardrobe(1.4)
+    given = decoded(Upload(picture, "all.png", boxes=boxes, sphere=True), LimitedProcess())
+    session.open_project(begin_project(session.projects_dir, "all.png", given, picture))
+    assert session.unfinished
+    before = session.scene
+    session.commit("add", before, further=(FurtherPhoto("mine", Inputs(plain_photo()), photo_camera()),))
+    build(session)
+    until(lambda: session.jobs.status is None and bool(session.scene.objects), seconds=120)
+    assert [o.category for o in session.scene.objects] == ["wardrobe"]
+    assert session.inputs is not None
+    assert not session.inputs.photo.equirectangular
+    sphere, *views, mine = session.further_photos
+    assert sphere.inputs.photo.equirectangular
+    assert sphere.inputs.boxes == given.inputs.boxes
+    assert len(views) == 7
+    assert all(p.is_placed for p in (sphere, *views))
+    assert mine.name == "mine"
+    assert not mine.is_placed, "where it was taken in the new room is not known"
+    session.undo(client)
+    assert session.scene is before
+    assert session.inputs.photo.equirectangular

@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 from diorama_app.projects.dropped import understood
-from diorama_app.projects.uploads import Upload, decoded
-from diorama_app.reconstruction.dropped_photos import begin_each, build_all_round_again, build_one_room
+from diorama_app.reconstruction.dropped_photos import begin_each, build_one_room
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_core.artefacts import FurtherPhoto
-from diorama_core.errors import InputError
-from diorama_core.io.limited import LimitedProcess
 from diorama_core.project.storage import Project
 from tests.app.projects.test_dropped import BOXES, PHOTO, packed
-from tests.multiview.spheres import sphere_with_wardrobe
 from tests.waiting import until
 
 
@@ -53,23 +46,3 @@ def test_a_room_of_photos_that_are_none_leaves_no_project(
     until(lambda: session.jobs.status is None, seconds=60)
     assert visited == []
     assert set(session.projects_dir.iterdir()) == before
-
-
-@pytest.mark.slow
-def test_a_room_is_built_again_from_the_boxes_in_its_360_degree_photo(session: EditorSession, client: Client) -> None:
-    picture, boxes = sphere_with_wardrobe(1.4)
-    given = decoded(Upload(picture, "all.png", boxes=boxes, sphere=True), LimitedProcess())
-    session.commit("add", session.scene, further=(FurtherPhoto("all", given.inputs),))
-    before = session.scene
-    client.choose_photo("all")
-    build_all_round_again(client)
-    until(lambda: session.jobs.status is None and session.scene is not before, seconds=120)
-    assert [o.category for o in session.scene.objects] == ["wardrobe"]
-    assert len(session.further_photos) == 8
-    assert all(p.is_placed for p in session.further_photos)
-    assert client.further_photo is session.further_photos[0]
-    session.undo(client)
-    assert session.scene is before
-    client.annotate("delete", replace(given.inputs, boxes=()))
-    with pytest.raises(InputError, match="mark the furniture"):
-        build_all_round_again(client)

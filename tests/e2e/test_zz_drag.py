@@ -1,0 +1,1 @@
+from diorama_core.synthesis.text_to_home import *  # noqa
