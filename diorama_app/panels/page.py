@@ -4,6 +4,7 @@ and on a phone it shows one panel.
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Callable, Sequence
 
@@ -87,6 +88,10 @@ only. A tab that is opened is opened again where others are made meanwhile (a ph
 two tabs that were open side by side a phone, with one list, opens the left one."""
 
 
+_REQUESTS = itertools.count(1)
+"""Numbers of requests, of all pages: a page may come to another project without being loaded again."""
+
+
 class Tabs:
     """The tabs of one page."""
 
@@ -99,12 +104,10 @@ class Tabs:
         """
         gui.add_html(run_once(_KEEPER % (json.dumps(list(map(_, tabs))), json.dumps(STORED_AS), TRIES)))
         self._opener = gui.add_html("")
-        self._asked = 0
 
     def open(self, name: str) -> None:
         """Bring a tab to the front."""
-        self._asked += 1
-        opening = f"window.__dioOpenTab && window.__dioOpenTab({json.dumps(_(name))}, {self._asked});"
+        opening = f"window.__dioOpenTab && window.__dioOpenTab({json.dumps(_(name))}, {next(_REQUESTS)});"
         self._opener.content = run_once(opening)
 
 
