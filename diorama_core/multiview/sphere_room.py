@@ -10,12 +10,13 @@ corner, or ends before a farther one. It is closed by going round twice. Distanc
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
 import cv2
 import numpy as np
-from jaxtyping import Float, Float32, Int, UInt8
+from jaxtyping import Bool, Float, Float32, Int, UInt8
 from scipy.ndimage import uniform_filter1d
 
 QUARTER = np.pi / 2
@@ -53,9 +54,10 @@ class SphereRoomSettings:
     alike_ceiling: float = 0.5
     """Weight of an edge between like colours at the ceiling, which is often as white as the walls; on the floor it
     is a line of the floor."""
-    ceiling_weight: float = 1.0
-    floor_weight: float = 0.6
-    """Furniture hides the floor's border more often than the ceiling's."""
+    margin_rad: float = float(np.deg2rad(2.0))
+    """Around what was marked: boxes are drawn, and the search looks, to about a degree."""
+    before_cost: float = 1.0
+    """Of a wall before what stands in the room, for each degree: as much as a perfect edge gains."""
     corner_cost: float = 8.0
     jump_cost: float = 24.0
     """Gain that a corner, and a wall that ends before a farther one (three corners), must gain: degrees of a perfect
@@ -73,6 +75,19 @@ class SphereRoomSettings:
 
 
 SETTINGS = SphereRoomSettings()
+
+
+@dataclass(frozen=True)
+class SphereThing:
+    """What a thing takes of the sphere, in the room's frame; radians."""
+
+    azimuth: float
+    half_width: float
+    low: float
+    high: float
+    """Elevations."""
+    stands: bool
+    """Whether it stands on the floor: then its lower end is where it does."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +118,14 @@ class _Wall:
 class _Edges:
     """Structure tensor of a level picture, to be asked for edges along curves."""
 
-    def __init__(self, level: UInt8[np.ndarray, "h w 3"], settings: SphereRoomSettings, blur_px: float = 0.0) -> None:
+    def __init__(
+        self,
+        level: UInt8[np.ndarray, "h w 3"],
+        settings: SphereRoomSettings,
+        things: Sequence[SphereThing] = (),
+        blur_px: float = 0.0,
+    ) -> None:
+        self.things = things
         height, self.width = level.shape[:2]
         scale = self.width / 1024
         pad = round(4 * settings.shade_px * scale)
@@ -203,17 +225,48 @@ class _Edges:
         """
         off = azimuth - axis * QUARTER
         tangent = np.cos(off) / reach
-        return self.along(azimuth, tangent, -np.sin(off) / reach / (1 + tangent**2))
+        strength = self.along(azimuth, tangent, -np.sin(off) / reach / (1 + tangent**2))
+        strength[self._hidden(azimuth, np.arctan(tangent))] = 0.0
+        return strength
+
+    def _hidden(
+        self, azimuth: Float[np.ndarray, "..."], elevation: Float[np.ndarray, "..."]
+    ) -> Bool[np.ndarray, "..."]:
+        """Where a thing is in front of the room: the edges there are its own."""
+        hidden, margin = np.zeros(elevation.shape, bool), SETTINGS.margin_rad
+        for thing in self.things:
+            beside = np.abs(np.angle(np.exp(1j * (azimuth - thing.azimuth)))) < thing.half_width + margin
+            hidden |= beside & (elevation > thing.low - margin) & (elevation < thing.high + margin)
+        return hidden
+
+    def before(
+        self, azimuth: Float[np.ndarray, "n"], axis: int, distances: Float[np.ndarray, "r"]
+    ) -> Bool[np.ndarray, "n r"]:
+        """Which walls would be before the foot of a thing that stands on the floor.
+
+        Args:
+            azimuth: where.
+            axis: of the wall.
+            distances: of the wall, in heights of the camera.
+        """
+        elevation = -np.arctan(np.cos(azimuth - axis * QUARTER)[:, None] / distances)
+        before = np.zeros(elevation.shape, bool)
+        for thing in self.things:
+            if thing.stands and thing.low < -SETTINGS.margin_rad:
+                beside = np.abs(np.angle(np.exp(1j * (azimuth - thing.azimuth)))) < thing.half_width
+                before |= beside[:, None] & (elevation < thing.low - SETTINGS.margin_rad)
+        return before
 
 
-def room_on_sphere(level: UInt8[np.ndarray, "h w 3"]) -> SphereRoom:
+def room_on_sphere(level: UInt8[np.ndarray, "h w 3"], things: Sequence[SphereThing] = ()) -> SphereRoom:
     """The room that the edges of a picture speak for.
 
     Args:
         level: equirectangular, +Z up, the room's axes along x and y (`geometry.sphere`).
+        things: what is in the room: its edges are not the room's, and no wall is before it.
     """
-    walls, log_height = _searched(_Edges(level, SETTINGS, SETTINGS.coarse_px))
-    fine = _Edges(level, SETTINGS)
+    walls, log_height = _searched(_Edges(level, SETTINGS, things, SETTINGS.coarse_px))
+    fine = _Edges(level, SETTINGS, things)
     walls, log_height = _refined(fine, walls, log_height)
     return _outlined(fine, walls, log_height)
 
@@ -236,7 +289,8 @@ def _searched(edges: _Edges) -> tuple[tuple[_Wall, ...], float]:
         away = np.abs(np.angle(np.exp(1j * (azimuth - axis * QUARTER)))) > SETTINGS.widest_rad
         for at, m in enumerate(heights):
             shifted = ceiling[:, -m - low : -m - low + count]
-            evidence[:, at, axis] = SETTINGS.ceiling_weight * shifted + SETTINGS.floor_weight * floor
+            evidence[:, at, axis] = shifted + floor
+            evidence[:, at, axis] -= SETTINGS.before_cost * edges.before(azimuth, axis, np.exp(distances))
             evidence[away, at, axis] = -np.inf
         off = np.abs(np.cos(azimuth - axis * QUARTER))[:, None]
         far = (distances - np.log(off) - np.log(SETTINGS.away[0])) / SETTINGS.away[1]
@@ -339,8 +393,7 @@ def _seen_borders(
         return None
     ceiling = edges.border(azimuth, axis, reach / np.exp(log_height))
     floor = edges.border(azimuth, axis, -reach)
-    weights = SETTINGS.ceiling_weight, SETTINGS.floor_weight
-    return (weights[0] * ceiling + weights[1] * floor) / sum(weights), owner
+    return 0.5 * (ceiling + floor), owner
 
 
 def _refined(edges: _Edges, walls: tuple[_Wall, ...], log_height: float) -> tuple[tuple[_Wall, ...], float]:

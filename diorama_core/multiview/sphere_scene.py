@@ -22,6 +22,7 @@ from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.geometry.sphere import directions, level_axes, perspective, sampled
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.taxonomy import category, is_furniture
 from diorama_core.multiview.joining import RoomPhoto, Track
 from diorama_core.multiview.joint_fit import JointCuboid
 from diorama_core.multiview.joint_room import SeenRoom, with_open_doorways
@@ -36,7 +37,8 @@ from diorama_core.multiview.rooms import (
     said_alone,
     track_name,
 )
-from diorama_core.multiview.sphere_room import SphereRoom, room_on_sphere
+from diorama_core.multiview.sphere_room import SETTINGS as ROOM
+from diorama_core.multiview.sphere_room import SphereRoom, SphereThing, room_on_sphere
 from diorama_core.multiview.sphere_views import (
     SphereBox,
     SphereView,
@@ -132,14 +134,14 @@ def build_sphere(
     """
     progress.report(0.0, "reading the room's directions all round")
     R = room_axes(sphere_lines(photo.rgb))
-    progress.report(0.03, "looking for the room's borders all round")
-    border = room_on_sphere(sampled(photo.rgb, directions(LEVEL_WIDTH_PX) @ R))
     views = sphere_views(photo.width)
     stem = photo.name.rsplit(".", 1)[0]
     pictures = [(v, view_photo(photo.rgb, R, v, f"{stem}-{_degrees(v):03d}.png")) for v in views]
     things = drawn_on_sphere(boxes, (photo.width, photo.height), R)
     if not boxes:
-        things = _found(pictures, choose, progress.part(0.05, 0.15))
+        things = _found(pictures, choose, progress.part(0.03, 0.12))
+    progress.report(0.12, "looking for the room's borders all round")
+    border = room_on_sphere(sampled(photo.rgb, directions(LEVEL_WIDTH_PX) @ R), in_the_way(things))
     read, sightings, height_m = _read(pictures, things, border, choose, progress.part(0.15, 0.3), camera_height_m)
     room_photos = [said_alone(r) for r in read]
     shown = [(thing, seen) for thing, seen in zip(things, sightings, strict=True) if seen]
@@ -158,6 +160,18 @@ def build_sphere(
         R,
         tuple((thing, track_name(number)) for number, (thing, _) in enumerate(shown)),
     )
+
+
+def in_the_way(things: Sequence[SphereBox]) -> tuple[SphereThing, ...]:
+    """What hides the room's borders. What hangs on a wall ends at them, so that only its middle does."""
+    hiding = []
+    for thing in things:
+        kind = thing.labelled.category
+        inset = 2 * ROOM.margin_rad if category(kind).mount == "wall" else 0.0
+        hiding.append(
+            SphereThing(thing.azimuth, thing.half_width, thing.low + inset, thing.high - inset, is_furniture(kind))
+        )
+    return tuple(hiding)
 
 
 def _track(seen: tuple[tuple[int, int], ...], photos: Sequence[RoomPhoto]) -> Track:
