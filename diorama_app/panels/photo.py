@@ -21,7 +21,7 @@ from diorama_app.projects.begin import begin_project, keep_given
 from diorama_app.projects.reading_again import upload_again, with_depth
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction import build_job as work
-from diorama_app.reconstruction.dropped_photos import build_all_round, check_all_round
+from diorama_app.reconstruction.dropped_photos import check_all_round
 from diorama_app.reconstruction.networks import (
     NO_DETECTOR,
     PROPOSALS_ONLY,
@@ -118,7 +118,8 @@ class PhotoPanel:
         def done(read: ReadInputs) -> None:
             project = begin_project(self._session.projects_dir, upload.name, read, upload.photo)
             keep_given(project, upload)
-            if client.preferences.build_at_once and not read.inputs.boxes and read.inputs.instances is None:
+            given, whole = read.inputs, read.inputs.photo.equirectangular
+            if client.preferences.build_at_once and (whole or not (given.boxes or given.instances is not None)):
                 project.update_info(**{work.AWAITED: True})
             self._session.visit(client, project, sentences(read.warnings[:3]))
 
@@ -127,10 +128,7 @@ class PhotoPanel:
                 ask_depth(client, unknown, lambda answer: self.begin(upload.answered(answer)))
                 return
             check_all_round(upload)
-            if client.preferences.build_at_once or upload.boxes is not None:
-                build_all_round(client, upload)
-            else:
-                self.begin(replace(upload, sphere=True))
+            self.begin(replace(upload, sphere=True))
 
         self._session.reader.read(upload, client.id, client.post, done, ask)
         self._announce(upload.name, upload.photo)
@@ -162,7 +160,7 @@ class PhotoPanel:
         show_value(self._at_once, client.preferences.build_at_once)
         self._no_detector.show(about if inputs is not None else "")
         proposed = 0 if inputs is None else self._boxes.proposed(inputs)
-        if inputs is not None and proposed and idle:
+        if inputs is not None and idle and (proposed or inputs.photo.equirectangular):
             self._build_if_awaited(inputs)
         self._bar.show("" if inputs is None else photo_bar(client, inputs, proposed))
         self._no_scene.show(no_scene_card(client))
@@ -280,7 +278,8 @@ class PhotoPanel:
         if project is None or project == self._seen_for or not session.unfinished:
             return
         self._seen_for = project
-        if work.is_awaited(project) and not inputs.boxes and self._boxes.sure(inputs):
+        whole = inputs.photo.equirectangular  # its views are searched by the build
+        if work.is_awaited(project) and (whole or (not inputs.boxes and self._boxes.sure(inputs))):
             self._build_found()
 
     def _mark_by_hand(self) -> None:

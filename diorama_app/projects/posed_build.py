@@ -25,8 +25,7 @@ from diorama_core.multiview.lens import straightened
 from diorama_core.multiview.posed_photos import PosedPhoto, Poses
 from diorama_core.multiview.rooms import JoinedRoom, PosedInputs, build_room, in_room
 from diorama_core.multiview.sphere_scene import build_sphere
-from diorama_core.perception.inputs import ReadInputs, read_inputs
-from diorama_core.pipeline.choices import NetworkChoice
+from diorama_core.perception.inputs import read_inputs
 from diorama_core.pipeline.presets import stages_for
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import Progress
@@ -146,28 +145,7 @@ def build_sphere_photo(files: PhotoFiles, options: BuildOptions, output: Path, p
     if named is not None:
         raise InputError(f"{files.photo.name} is a 360 degree photo, with which {named} is not used; leave it out")
     given = read_inputs(files.photo, boxes=files.boxes, sphere=True)
-    return build_read_sphere(given, options, options.networks(files), output, progress, files.camera_height_m)
-
-
-def build_read_sphere(
-    given: ReadInputs,
-    options: BuildOptions,
-    networks: NetworkChoice,
-    output: Path,
-    progress: Progress,
-    camera_height_m: float | None = None,
-) -> PosedBuild:
-    """One project of a 360 degree photo that was read; what is raised is as for `build_sphere_photo`.
-
-    Args:
-        given: the photo, with boxes in its pixels where they are given.
-        options: of the build.
-        networks: that are used.
-        output: folder that is written.
-        progress: reports and cancellation.
-        camera_height_m: above the floor, where it is known.
-    """
-    library = diorama.open_library(options.library)
+    library, networks = diorama.open_library(options.library), options.networks(files)
 
     def choose(inputs: Inputs) -> Stages:
         return stages_for(options.profile, inputs, library, recipe=options.recipe, choice=networks)
@@ -177,7 +155,7 @@ def build_read_sphere(
         layout = recipe(options.recipe, library, depth_measured=True)
         built = build_sphere(
             given.inputs.photo, given.inputs.boxes, library, choose, layout, progress,
-            camera_height_m=camera_height_m,
+            camera_height_m=files.camera_height_m,
         )  # fmt: skip
         notes = (*given.warnings, *built.room.notes)
         rows = [(n, partial(_png, v.inputs.photo.rgb), v) for n, v in zip(built.names, built.views, strict=True)]

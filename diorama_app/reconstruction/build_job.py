@@ -143,7 +143,7 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
         message: what is said at the end instead of the number of objects.
     """
     if inputs.photo.equirectangular:
-        build_whole_room(session, inputs)
+        build_whole_room(session, inputs, title)
         return
     session.need_writable()
     project = session.project
@@ -175,12 +175,13 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
     session.jobs.start("build", title, work)
 
 
-def build_whole_room(session: EditorSession, sphere: Inputs) -> None:
+def build_whole_room(session: EditorSession, sphere: Inputs, title: str = "") -> None:
     """Build the room of the open project from one of its photos, a 360 degree photo, as one undo step.
 
     Args:
         session: where.
         sphere: the photo with its boxes; without any, what is found in its views is used.
+        title: what the job is called; empty for that it builds the whole room.
 
     Raises:
         EditRefused: the project is read-only.
@@ -207,7 +208,7 @@ def build_whole_room(session: EditorSession, sphere: Inputs) -> None:
 
     for client in session.clients.values():
         client.view.canvas.close()
-    session.jobs.start("build", _("Building the whole room of a 360 degree photo"), work)
+    session.jobs.start("build", title or _("Building the whole room of a 360 degree photo"), work)
 
 
 def _show_whole_room(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -102,40 +101,6 @@ def check_all_round(upload: Upload) -> None:
     for name, given in (("depth", upload.depth), ("masks", upload.masks)):
         if given is not None:
             raise InputError(f"{upload.name} is a 360 degree photo, with which {name} is not used; leave it out")
-
-
-def build_all_round(client: Client, upload: Upload) -> None:
-    """Build one project of a 360 degree photo, and open it.
-
-    Args:
-        client: the browser that asked.
-        upload: the photo, with boxes where they came with it.
-    """
-    session = client.session
-
-    def work(progress: Progress) -> None:
-        from diorama_app.projects.options import BuildOptions  # the pipeline, without which the editor opens
-        from diorama_app.projects.posed_build import build_read_sphere
-        from diorama_core.pipeline.choices import NetworkChoice
-
-        process = LimitedProcess()
-        try:
-            given = decoded(replace(upload, sphere=True), process)
-        finally:
-            process.close()
-        output = fresh_folder(session.projects_dir, upload.name)
-        try:
-            built = build_read_sphere(given, BuildOptions(), NetworkChoice(), output, progress)
-        except BaseException:
-            shutil.rmtree(output, ignore_errors=True)
-            raise
-        message = _("The whole room from a 360 degree photo; objects: {objects}.").format(
-            objects=len(built.room.scene.objects)
-        )
-        client.post(lambda: session.visit(client, built.project, message))
-
-    session.jobs.start("build", _("Building the whole room of a 360 degree photo"), work)
-    client.close_dialog()
 
 
 def _check_photos(reading: Reading, files: Mapping[str, bytes]) -> None:

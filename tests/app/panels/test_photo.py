@@ -43,21 +43,20 @@ def panel(session, page: Page, client, commands, monkeypatch) -> PhotoPanel:
     return made
 
 
-@pytest.mark.slow
-def test_a_360_degree_photo_is_built_as_a_whole_room_of_its_own(
-    session, page: Page, panel: PhotoPanel, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    visited: list[Project] = []
-    closed: list[str] = []
-    monkeypatch.setattr(session, "visit", lambda client, project, said: visited.append(project))
-    page.client.dialog = lambda: closed.append("the start page, behind which the work is shown")
+def test_a_360_degree_photo_is_marked_first_or_built_at_once(session, page: Page, panel: PhotoPanel, client) -> None:
     content, boxes = sphere_with_wardrobe(1.4)
-    panel.begin(Upload(content, "hall.png", boxes=Source(boxes, "hall.json")))
-    until(lambda: bool(visited), lambda: session.jobs.status, seconds=300)
-    assert closed
-    scene = visited[0].load_scene()
-    assert [o.category for o in scene.objects] == ["wardrobe"]
-    assert len(scene.architecture.by_role("wall")) == 4
+    for at_once in (False, True):
+        client.preferences = replace(client.preferences, build_at_once=at_once)
+        panel.begin(Upload(content, "hall.png", boxes=Source(boxes, "hall.json")))
+        session.reader.wait()
+        page.settle()
+        assert session.inputs.photo.equirectangular
+        assert [b.label for b in session.inputs.boxes] == ["wardrobe"]
+        assert session.unfinished
+        status = session.jobs.status
+        assert (status is not None and status.title == build_job.UNASKED) == at_once
+    session.jobs.cancel()
+    until(lambda: session.jobs.status is None, seconds=60)
 
 
 def test_a_360_degree_photo_takes_no_depth(
