@@ -1,1 +1,0 @@
-from diorama_core.synthesis.text_to_home import *  # noqa
