@@ -68,7 +68,7 @@ def read_bytes(path: Path, most: int, error: Kind, advice: str = "restore it fro
                 raise error(f"{path} is not a file; {advice}")
             if about.st_size > most:
                 raise error(f"{path} has more than the {megabytes(most)} that are read; {advice}")
-            return stream.read(most)
+            return stream.read(min(most, about.st_size))  # Python takes as much memory as it is asked to read
     except OSError as reason:
         raise error(f"{path} cannot be read ({reason.strerror or reason}); {advice}") from reason
     except (ValueError, MemoryError) as reason:  # a null character in the name; a file larger than what is free
