@@ -224,6 +224,9 @@ def _show_whole_room(
     main, further = built.views[0], built.further_photos(sphere)
     known = {Path(n).stem for n in built.names} | {p.name for p in further}
     others = [replace(p, camera=None, seen=()) for p in session.further_photos if p.name not in known]
+    for client in session.clients.values():
+        client.view.canvas.close()  # it would show the photo that the scene opens with
+        client.open_tab("Scene")
     session.commit(
         _("build the whole room"),
         built.room.scene,
@@ -231,8 +234,6 @@ def _show_whole_room(
         inputs=replace(main.inputs, intrinsics=main.camera.intrinsics),
         further=(*further, *others),
     )
-    for client in session.clients.values():
-        client.open_tab("Scene")
     session.view.show_whole_room()
     session.notice_all(counted(built.room.scene), "good")
 

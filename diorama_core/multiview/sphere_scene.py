@@ -58,7 +58,7 @@ from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
-from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Scene, yaw_rotation
+from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Scene, SceneObject, yaw_rotation
 
 LEVEL_WIDTH_PX = 1024
 """Of the picture in which the room is looked for."""
@@ -101,7 +101,9 @@ class SphereScene:
         """
         photo, T = inputs.photo, np.eye(4)
         T[:3, :3], T[:3, 3] = self.R_room_sphere, self.views[0].camera.position
-        found = on_picture([thing for thing, _ in self.things], (photo.width, photo.height), self.R_room_sphere)
+        known = {o.id: o for o in self.room.scene.objects}
+        things = [_named(thing, known[name]) if name in known else thing for thing, name in self.things]
+        found = on_picture(things, (photo.width, photo.height), self.R_room_sphere)
         whole = FurtherPhoto(Path(photo.name).stem, replace(inputs, boxes=inputs.boxes or found), T_world_sphere=T)
         views = zip(self.names[1:], self.views[1:], self.room.seen[1:], strict=True)
         return (whole, *(FurtherPhoto(Path(name).stem, v.inputs, v.camera, seen) for name, v, seen in views))
@@ -160,6 +162,11 @@ def build_sphere(
         R,
         tuple((thing, track_name(number)) for number, (thing, _) in enumerate(shown)),
     )
+
+
+def _named(thing: SphereBox, item: SceneObject) -> SphereBox:
+    """A thing that was found, called what it became."""
+    return replace(thing, labelled=replace(thing.labelled, label=item.label, category=item.category, guessed=True))
 
 
 def in_the_way(things: Sequence[SphereBox]) -> tuple[SphereThing, ...]:
