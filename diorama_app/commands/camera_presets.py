@@ -58,7 +58,7 @@ class Views:
         client.refresh()
 
     def follow(self, client: Client) -> None:
-        """Be told when a person turns this browser's view."""
+        """Call `turned` whenever a person turns this browser's view."""
 
         async def looked(_: viser.CameraHandle) -> None:
             client.post(lambda: self.turned(client), key="turned")
@@ -66,7 +66,7 @@ class Views:
         client.viser_client.camera.on_update(looked)
 
     def turned(self, client: Client) -> None:
-        """Who looks around in a 360 degree photo has turned: the photo turns, too."""
+        """Turn the 360 degree photo with the view of who looks around in it."""
         further = client.further_photo
         if further is None or further.T_world_sphere is None or not client.view.camera.through_photo:
             return
@@ -85,7 +85,7 @@ class Views:
                 client.view.photo.show_overlay(camera, photo.rgb, client.view.photo.opacity)
 
     def _far(self) -> float:
-        """More than the length of everything in the room."""
+        """A distance beyond everything in the room."""
         low, high = bounds(self._session.scene)
         return float(np.linalg.norm(high - low)) + 2.0
 

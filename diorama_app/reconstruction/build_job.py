@@ -284,7 +284,7 @@ def forget_build(project: Project) -> None:
 
 
 def counted(scene: Scene) -> str:
-    """What is said of a scene that was built."""
+    """Message about a scene that was built: its number of objects."""
     return plural(*BUILT, len(scene.objects))
 
 

@@ -20,7 +20,7 @@ def dot(a: Float[np.ndarray, "*#n 3"], b: Float[np.ndarray, "*#n 3"]) -> Float[n
 def alike(
     rows: Float[np.ndarray, "*n 3"], middle: Float[np.ndarray, "3"], within: Float[np.ndarray, "3"]
 ) -> Bool[np.ndarray, "*n"]:
-    """Which rows differ from the middle by less than `within` in each of three numbers; column by column, as `dot`."""
+    """Mask of rows that differ from the middle by less than `within` in each number; column by column, as `dot`."""
     first, second, third = (np.abs(rows[..., k] - middle[k]) < within[k] for k in range(3))
     return np.asarray(first & second & third)
 

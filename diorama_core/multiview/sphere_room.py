@@ -79,7 +79,7 @@ SETTINGS = SphereRoomSettings()
 
 @dataclass(frozen=True)
 class SphereThing:
-    """What a thing takes of the sphere, in the room's frame; radians."""
+    """Extent of a thing on the sphere, in the room's frame; radians."""
 
     azimuth: float
     half_width: float
@@ -232,7 +232,7 @@ class _Edges:
     def _hidden(
         self, azimuth: Float[np.ndarray, "..."], elevation: Float[np.ndarray, "..."]
     ) -> Bool[np.ndarray, "..."]:
-        """Where a thing is in front of the room: the edges there are its own."""
+        """Mask of directions in which a thing is in front of the room, so that edges are its own."""
         hidden, margin = np.zeros(elevation.shape, bool), SETTINGS.margin_rad
         for thing in self.things:
             beside = np.abs(np.angle(np.exp(1j * (azimuth - thing.azimuth)))) < thing.half_width + margin
@@ -242,7 +242,7 @@ class _Edges:
     def before(
         self, azimuth: Float[np.ndarray, "n"], axis: int, distances: Float[np.ndarray, "r"]
     ) -> Bool[np.ndarray, "n r"]:
-        """Which walls would be before the foot of a thing that stands on the floor.
+        """Mask of walls that would be nearer than the foot of a thing that stands on the floor.
 
         Args:
             azimuth: where.

@@ -170,7 +170,7 @@ def _named(thing: SphereBox, item: SceneObject) -> SphereBox:
 
 
 def in_the_way(things: Sequence[SphereBox]) -> tuple[SphereThing, ...]:
-    """What hides the room's borders. What hangs on a wall ends at them, so that only its middle does."""
+    """Extents that hide the room's borders; of what hangs on a wall, which ends at them, only the middle."""
     hiding = []
     for thing in things:
         kind = thing.labelled.category

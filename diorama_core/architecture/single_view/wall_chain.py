@@ -59,19 +59,19 @@ class Chain:
 
 @dataclass(frozen=True, eq=False)
 class _BelowCeiling:
-    """What walls cost in every heading, whatever the ceiling's height."""
+    """Costs of walls in every heading that do not depend on the ceiling's height."""
 
     near: Float[np.ndarray, "w m"]
     """Level distance; 1 where a wall is not met."""
     met: Bool[np.ndarray, "w m"]
     floor: Float[np.ndarray, "w m"]
-    """Of the floor before the wall."""
+    """Cost of the floor before the wall."""
     upright: Float[np.ndarray, "w m"]
-    """Of the wall as if it went on below the floor."""
+    """Cost of the wall as if it went on below the floor."""
     foot: Float[np.ndarray, "w m"]
     skirting: Float[np.ndarray, "w m"]
     others: Float[np.ndarray, "w m"]
-    """Of objects and of unusual places."""
+    """Cost of objects and of unusual places."""
 
 
 @dataclass(frozen=True, eq=False)
