@@ -168,13 +168,15 @@ class EditorPage:
         """Whether nothing covers the canvas at this place of the page."""
         return bool(self.page.evaluate(ON_CANVAS, [x, y]))
 
-    def until(self, holds: Callable[[], bool], what: str = "", seconds: float = PATIENCE_MS / 1000) -> None:
-        """Poll the program's own state with the page's clock."""
+    def until(
+        self, holds: Callable[[], bool], what: str | Callable[[], str] = "", seconds: float = PATIENCE_MS / 1000
+    ) -> None:
+        """Poll the program's own state with the page's clock; `what` may tell what is there instead."""
         for _ in range(int(seconds * 20)):
             if holds():
                 return
             self.page.wait_for_timeout(50)
-        raise AssertionError(f"did not come about: {what or holds}")
+        raise AssertionError(f"did not come about: {(what() if callable(what) else what) or holds}")
 
     def still(self, read: Callable[[], T], apart_ms: int = 400) -> T:
         """A value of the page, once it is the same twice in a row: beside other work the page is slow."""

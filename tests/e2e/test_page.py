@@ -59,7 +59,11 @@ def test_the_first_thing_seen_is_ours(context, serve: Callable[..., Running], tm
 @pytest.mark.parametrize(("width", "height"), [(1440, 900), (1280, 720)])
 def test_panels_leave_the_room_and_the_tools_stay(editor: EditorPage, resized: Page, width: int, height: int) -> None:
     resized.set_viewport_size({"width": width, "height": height})
-    editor.until(lambda: editor.canvas_box()[2] >= 0.6 * width, "most of the window is the room's")
+    widths = "[innerWidth, ...[...document.querySelectorAll('[data-dock-region]')].map((e) => e.offsetWidth)]"
+    editor.until(
+        lambda: editor.canvas_box()[2] >= 0.6 * width,
+        lambda: f"most of the window is the room's: {editor.canvas_box()}, window, panels {resized.evaluate(widths)}",
+    )
     editor.settle()
     left, _, across, _ = editor.canvas_box()
     for tab in ("Scene", "Photo", "Arrange", "Project", "Object", "Library", "Export"):
