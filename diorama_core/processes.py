@@ -41,8 +41,8 @@ ORPHAN_S = 1.0
 """Time between two looks at whether the process that started one is still there."""
 
 
-class _Kept:
-    """The processes of this one."""
+class _Pool:
+    """Processes beside this one."""
 
     def __init__(self) -> None:
         self._pool: Any = None
@@ -79,7 +79,7 @@ class _Kept:
         return result
 
 
-_KEPT = _Kept()
+_POOL = _Pool()
 
 
 def prepare(load: Callable[[], None]) -> None:
@@ -88,15 +88,15 @@ def prepare(load: Callable[[], None]) -> None:
     Args:
         load: Called in each before its first work; the same function every time.
     """
-    _KEPT.start(load)
+    _POOL.start(load)
 
 
 def are_ready() -> bool:
     """Whether one of them has loaded what it needs, so that work is given to it."""
-    return _KEPT.ready
+    return _POOL.ready
 
 
-def there(function: Callable[..., Result], *arguments: Any) -> Result:
+def call_beside(function: Callable[..., Result], *arguments: Any) -> Result:
     """The function's result, from a process beside this one where there is one; waits for it.
 
     Args:
@@ -106,13 +106,13 @@ def there(function: Callable[..., Result], *arguments: Any) -> Result:
     if not are_ready():
         return function(*arguments)
     try:
-        return _KEPT.call(function, arguments)
+        return _POOL.call(function, arguments)
     except (PicklingError, BrokenProcessPool, ShutdownExecutorError) as error:
         log.debug("done here, not beside: %s", error)
         return function(*arguments)
 
 
-def each_there(
+def map_beside(
     function: Callable[..., Result],
     arguments: Sequence[tuple[Any, ...]],
     progress: Progress = SILENT,
@@ -121,7 +121,7 @@ def each_there(
     """The function's results for several arguments, in order: some from processes, some from here.
 
     Args:
-        function: As in `there`.
+        function: As in `call_beside`.
         arguments: For each call; the longest ones first.
         progress: Told after every call made here; `Cancelled` drops the calls that have not begun.
         message: What is told.
@@ -138,11 +138,11 @@ def each_there(
             results[k] = call(function, *arguments[k])
             progress.report(1.0 - len(waiting) / len(arguments), message)
 
-    others = max(min(_KEPT.count, len(arguments) - 1), 0)
+    others = max(min(_POOL.count, len(arguments) - 1), 0)
     with ThreadPoolExecutor(max(others, 1)) as threads:
         try:
-            beside = [threads.submit(draw, there, SILENT) for _ in range(others)]
-            draw(_here, progress)
+            beside = [threads.submit(draw, call_beside, SILENT) for _ in range(others)]
+            draw(_call_here, progress)
             for thread in beside:
                 thread.result()
         except BaseException:
@@ -151,22 +151,30 @@ def each_there(
     return results
 
 
-def _here(function: Callable[..., Result], *arguments: Any) -> Result:
+def _call_here(function: Callable[..., Result], *arguments: Any) -> Result:
     return function(*arguments)
 
 
 def _begin(load: Callable[[], None]) -> None:
     """What a process does first."""
-    threading.Thread(target=_end_with_parent, args=(os.getppid(),), daemon=True, name="end-with-parent").start()
+    end_with_parent()
     load_quickly()
     load()
 
 
-def _end_with_parent(parent: int) -> None:
-    """End this process when the one that started it was killed; where a system does not tell, being idle ends it."""
-    while os.getppid() == parent:
-        time.sleep(ORPHAN_S)
-    os._exit(1)
+def end_with_parent() -> None:
+    """End this process when the one that started it was killed: it would wait for work for ever.
+
+    Where a system does not tell, being idle ends it.
+    """
+    parent = os.getppid()
+
+    def wait_for_end() -> None:
+        while os.getppid() == parent:
+            time.sleep(ORPHAN_S)
+        os._exit(1)
+
+    threading.Thread(target=wait_for_end, daemon=True, name="end-with-parent").start()
 
 
 def _nothing() -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from diorama_core.errors import InputError, LibraryError
-from diorama_core.workers import LocalWorkers, RayWorkers, WorkerDied, Workers, each, workers
+from diorama_core.workers import LocalWorkers, RayWorkers, WorkerDied, Workers, map_threads, workers
 from tests.processes import runs
 from tests.waiting import until
 
@@ -134,7 +134,7 @@ def test_each_works_in_order_by_two_threads_and_errors_arrive() -> None:
         names.add(threading.current_thread().name)
         return k * k
 
-    assert each(work, range(50)) == [k * k for k in range(50)]
+    assert map_threads(work, range(50)) == [k * k for k in range(50)]
     assert len(names) <= 2
     with pytest.raises(ZeroDivisionError):
-        each(lambda k: 1 // k, [1, 0])
+        map_threads(lambda k: 1 // k, [1, 0])

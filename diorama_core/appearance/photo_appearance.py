@@ -35,7 +35,7 @@ from diorama_core.library.slots import Slot, slots_of
 from diorama_core.library.stretch import relative_scale, stretched_parts
 from diorama_core.library.taxonomy import LAMPS, SETS
 from diorama_core.scene.types import Camera, PhotoMaterial, RoomLight, Scene, SceneObject
-from diorama_core.workers import each
+from diorama_core.workers import map_threads
 
 Picture = UInt8[np.ndarray, "_ _ 3"]
 
@@ -87,7 +87,7 @@ def photo_appearance(
         return PhotoAppearance({}, {})
     detected_by_id = {o.id: o for o in objects}
     camera = scene.camera
-    seen = each(
+    seen = map_threads(
         lambda item: _seen(item, _parts(library, item), rgb, detected_by_id[item.id], objects, camera),
         [item for item in scene.objects if item.id in detected_by_id],
     )
@@ -99,7 +99,7 @@ def photo_appearance(
     falls = irradiance_map(replace(scene, light=light), scene.camera, library)
     materials: dict[str, tuple[PhotoMaterial, ...]] = {}
     pictures: dict[str, Picture] = {}
-    surfaces = each(lambda one: _surfaces(one, rgb, falls), seen)
+    surfaces = map_threads(lambda one: _surfaces(one, rgb, falls), seen)
     for one, of_slots in zip(seen, surfaces, strict=True):
         made = [(_face_material(one.item, face), face.picture) for face in one.faces] + of_slots
         materials[one.item.id] = tuple(material for material, _ in made)

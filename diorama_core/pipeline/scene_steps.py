@@ -38,7 +38,7 @@ from diorama_core.perception.foundation.depth_prediction import with_depth
 from diorama_core.perception.illuminant import Illuminant
 from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
 from diorama_core.pipeline.steps import Corrected, LaidOut
-from diorama_core.processes import there
+from diorama_core.processes import call_beside
 from diorama_core.progress import Progress
 from diorama_core.protocols import EmptyRoomFiller, LayoutStage, Preview, RefinementStage
 from diorama_core.scene.edits import set_metrics
@@ -161,7 +161,7 @@ def appearance(
         library: where shapes come from.
         light: that the photo was freed of.
     """
-    return there(photo_appearance, balanced.photo.rgb, objects, scene, library, light.rgb)
+    return call_beside(photo_appearance, balanced.photo.rgb, objects, scene, library, light.rgb)
 
 
 def plane_pictures(

@@ -37,7 +37,7 @@ from diorama_core.pose.parameter_fit import ParameterFit
 from diorama_core.pose.seen_objects import SeenObject, seen_objects
 from diorama_core.pose.settings import SETTINGS, PoseSettings, ShapeFitSettings
 from diorama_core.pose.turned_profile import turned
-from diorama_core.processes import each_there
+from diorama_core.processes import map_beside
 from diorama_core.progress import Progress
 from diorama_core.protocols import PoseStage
 from diorama_core.scene.types import Candidate, Pose
@@ -91,7 +91,7 @@ class MadeToMeasure:
         longest_first = sorted(_sets(posed), key=lambda members: -_variants(members))  # no thread waits for a last one
         shown = [{m.object_id: seen[m.object_id] for m in members if m.object_id in seen} for members in longest_first]
         tasks = list(zip(longest_first, shown, strict=True))
-        made = each_there(self._of_set, tasks, progress, "Making shapes to measure")
+        made = map_beside(self._of_set, tasks, progress, "Making shapes to measure")
         fitted_by_id = {object_id: candidate for of_set in made for object_id, candidate in of_set.items()}
         return tuple(_with_first(p, fitted_by_id[p.object_id]) if p.object_id in fitted_by_id else p for p in posed)
 
@@ -112,7 +112,7 @@ class MadeToMeasure:
 
         free = [one for one in posed if not agreed(one)]
         tasks = [(one, seen[one.object_id]) for one in free]
-        chosen = {one.object_id: one for one in each_there(choice.best_first, tasks)}
+        chosen = {one.object_id: one for one in map_beside(choice.best_first, tasks)}
         return tuple(chosen.get(one.object_id, one) for one in posed)
 
     def _of_set(self, members: Sequence[PosedCandidates], shown: Mapping[str, SeenObject]) -> dict[str, Candidate]:

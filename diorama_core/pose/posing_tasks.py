@@ -25,7 +25,7 @@ from diorama_core.pose.measured import MeasuredObject, foot_height_m
 from diorama_core.pose.settings import SETTINGS, PoseSearchSettings, PoseSettings
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.scene.types import Candidate, Pose
-from diorama_core.workers import each
+from diorama_core.workers import map_threads
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +112,7 @@ def posing_tasks(
         settings,
     )
     posed = [i for i, item in enumerate(items) if item.id in kinds]
-    return each(lambda i: scene.task(i, kinds[items[i].id], cells), posed)
+    return map_threads(lambda i: scene.task(i, kinds[items[i].id], cells), posed)
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,7 +34,7 @@ from diorama_core.pose.room_evidence import Trials, TriedShape, facing_room, pow
 from diorama_core.pose.sets import agreed_ranks, shared_scales
 from diorama_core.pose.settings import SETTINGS, PoseSettings
 from diorama_core.pose.turns import TurnSearch
-from diorama_core.processes import each_there
+from diorama_core.processes import map_beside
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Pose
 
@@ -88,7 +88,7 @@ class RenderAndCompare:
         facings = solve(trials.room, self.facing)
         tasks = [task.with_facing(facings.costs_of(task.item.id)) for task in trials.tasks]
         pieces = list(zip(tasks, trials.tried, strict=True))
-        tried = each_there(self._pose_object, pieces, progress.part(0.5, 1.0), "Posing objects")
+        tried = map_beside(self._pose_object, pieces, progress.part(0.5, 1.0), "Posing objects")
         ranks = agreed_ranks(
             [task.item.category for task in tasks],
             [{posed.shape.id: posed.rank for posed in of_one} for of_one in tried],
@@ -122,7 +122,7 @@ class RenderAndCompare:
         cells = (self.coarse_cells, self.fine_cells)
         tasks = posing_tasks(inputs, objects, geometry, depth, kinds, cells, walls, self.settings)
         pieces = [(task, [(records[i], score) for i, score in ranked[task.item.id]]) for task in tasks]
-        tried = each_there(self._try_shapes, pieces, progress, "Trying poses")
+        tried = map_beside(self._try_shapes, pieces, progress, "Trying poses")
         return Trials(
             tasks, tried, facing_room(geometry, kinds, tasks, tried, walls, self.settings.search), self.settings.search
         )

@@ -17,7 +17,7 @@ from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.settings import SETTINGS, PoseSettings
 from diorama_core.pose.surface import measured_surface, noise_of
 from diorama_core.scene.types import Pose
-from diorama_core.workers import each
+from diorama_core.workers import map_threads
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,4 +128,4 @@ def seen_objects(
         )
 
     shown = [k for k, item in enumerate(items) if item.id in pose_of]
-    return {items[k].id: one for k, one in zip(shown, each(seen, shown), strict=True) if one is not None}
+    return {items[k].id: one for k, one in zip(shown, map_threads(seen, shown), strict=True) if one is not None}

@@ -16,7 +16,7 @@ from diorama_core.render.filters import Neighbours
 from diorama_core.render.lighting import TILE, Effort, Lighting, Spots, irradiance
 from diorama_core.render.raycast import Grid, bands
 from diorama_core.render.world import World
-from diorama_core.workers import each
+from diorama_core.workers import map_threads
 
 Light = Float32[np.ndarray, "h w 3"]
 SAME_TURN = 0.85
@@ -43,21 +43,21 @@ def fallen_light(
     coarse = grid.part(slice(0, None, 2), slice(0, None, 2))
     rows = bands(coarse.found.shape[0])
     noisy = np.concatenate(
-        each(
+        map_threads(
             lambda band: _noisy(world, blockers, coarse.part(band), band, light, effort),
             rows,
             progress.part(0.0, 0.8),
             "gathering light",
         )
     )
-    gathered = each(lambda band: _gathered(noisy, coarse, band), rows)
+    gathered = map_threads(lambda band: _gathered(noisy, coarse, band), rows)
     smooth, sure = (np.concatenate([pair[k] for pair in gathered]) for k in (0, 1))
-    spread = each(lambda band: _spread(smooth, sure, coarse, grid, band), rows)
+    spread = map_threads(lambda band: _spread(smooth, sure, coarse, grid, band), rows)
     fallen, known = (np.concatenate([pair[k] for pair in spread]) for k in (0, 1))
     pixels = np.argwhere(grid.found & ~known)
     groups = [group for group in np.array_split(pixels, 1 + len(pixels) // 4096) if len(group)]
     rest = progress.part(0.8, 1.0)
-    lit = each(lambda group: _alone(world, blockers, grid, group, light), groups, rest, "gathering light")
+    lit = map_threads(lambda group: _alone(world, blockers, grid, group, light), groups, rest, "gathering light")
     for group, alone in zip(groups, lit, strict=True):
         fallen[group[:, 0], group[:, 1]] = alone
     return fallen

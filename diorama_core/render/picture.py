@@ -23,7 +23,7 @@ from diorama_core.render.world import World, scene_world
 from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Camera, Intrinsics, Scene
-from diorama_core.workers import each
+from diorama_core.workers import map_threads
 
 DEFAULT_SIZE = (1024, 768)
 LARGEST_DEFAULT_PX = 1280
@@ -77,7 +77,7 @@ def picture(
     light = light or lit_world
     shot = shoot(world, blockers, source, light, effort, progress.part(0.1, 1.0))
     exposure = np.float32(scene.light_settings.exposure)
-    return np.concatenate(each(lambda band: _developed(shot, band, exposure), bands(source.height)))
+    return np.concatenate(map_threads(lambda band: _developed(shot, band, exposure), bands(source.height)))
 
 
 def lit(scene: Scene, opened: Scene, library: ShapeLibrary, world: World, view: View) -> tuple[Lighting, RayScene]:

@@ -16,7 +16,7 @@ from diorama_core.render.gloss import gloss_share
 from diorama_core.render.lighting import Effort, Lighting, ambient, unshadowed
 from diorama_core.render.raycast import Grid, View, bands, pixel_centres, pixel_footprint
 from diorama_core.render.world import Places, World
-from diorama_core.workers import each
+from diorama_core.workers import map_threads
 
 BRIGHTEST = 2.0
 """Light beyond this is white anyway; unclipped it would eat away what it borders on."""
@@ -53,10 +53,10 @@ def shoot(
         Cancelled: when asked to stop.
     """
     rows = bands(view.height)
-    parts = each(lambda band: _first_sight(world, view, band), rows, progress.part(0.0, 0.15), "casting rays")
+    parts = map_threads(lambda band: _first_sight(world, view, band), rows, progress.part(0.0, 0.15), "casting rays")
     grid = _grid(parts, view)
     fallen = fallen_light(world, blockers, grid, light, effort, progress.part(0.15, 0.6))
-    seen = each(
+    seen = map_threads(
         lambda pair: _seen(world, pair[1].places, pair[1].rays, fallen[pair[0]][pair[1].found], light),
         list(zip(rows, parts, strict=True)),
         progress.part(0.6, 0.8),
@@ -80,7 +80,7 @@ def light_map(
         light: Sources.
         effort: Rays.
     """
-    parts = each(lambda band: _first_sight(world, view, band), bands(view.height))
+    parts = map_threads(lambda band: _first_sight(world, view, band), bands(view.height))
     return fallen_light(world, blockers, _grid(parts, view), light, effort, Progress())
 
 
@@ -200,11 +200,11 @@ def _with_smooth_edges(
 ) -> Shot:
     """Pixels at edges seen again through four more positions."""
     grid = shot.grid
-    pixels = np.argwhere(np.concatenate(each(lambda band: _edges(shot, band), bands(view.height))))
+    pixels = np.argwhere(np.concatenate(map_threads(lambda band: _edges(shot, band), bands(view.height))))
     if not len(pixels):
         return shot
     groups = np.array_split(pixels, 1 + len(pixels) // 4096)
-    again = each(
+    again = map_threads(
         lambda group: _seen_again(world, view, light, grid, fallen, group), groups, progress, "smoothing edges"
     )
     radiance, coverage = np.minimum(shot.radiance, BRIGHTEST), shot.coverage.copy()
@@ -291,7 +291,7 @@ def _grid(parts: list[_Band], view: View) -> Grid:
         whole[is_hit] = np.concatenate(values)
         return whole
 
-    points, normals, flat_normals, instance, photographed = each(
+    points, normals, flat_normals, instance, photographed = map_threads(
         image, ("points", "normals", "flat_normals", "instance", "photographed")
     )
     return Grid(is_hit, points, normals, flat_normals, instance, depth, pixel_footprint(view, depth), photographed)

@@ -15,7 +15,7 @@ from diorama_core import processes
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import LibraryError
 from diorama_core.pipeline.beside import looking_ahead, prepare_processes
-from diorama_core.processes import are_ready, there
+from diorama_core.processes import are_ready, call_beside
 from tests.waiting import until
 
 
@@ -25,12 +25,12 @@ def loaded(name: str) -> bool:
 
 def test_the_work_of_a_build_is_loaded_before_it_is_sent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LOKY_MAX_CPU_COUNT", "2")
-    monkeypatch.setattr(processes, "_KEPT", processes._Kept())
+    monkeypatch.setattr(processes, "_POOL", processes._Pool())
     prepare_processes()
     until(are_ready)
     for module in ("diorama_core.appearance.photo_appearance", "diorama_core.pose.made_to_measure", "open3d"):
-        assert there(loaded, module)
-    assert not there(loaded, "diorama_app")
+        assert call_beside(loaded, module)
+    assert not call_beside(loaded, "diorama_app")
 
 
 BOXES = (LabelledBox((0.0, 0.0, 10.0, 10.0), "chair", "chair"),)
