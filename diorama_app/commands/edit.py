@@ -12,7 +12,7 @@ from jaxtyping import Float
 from diorama_app.session.client import Client
 from diorama_app.strings import _, plural
 from diorama_core.editing.clearances import SIDES, moved_to_clearance
-from diorama_core.editing.support_changes import on_floor_of_room
+from diorama_core.editing.support_changes import attach_to_room_floor
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
@@ -329,7 +329,7 @@ def supporter_name(scene: Scene, any_id: str) -> str:
 def _move(client: Client, item: SceneObject, pose: Pose, field: str) -> None:
     client.session.edit(
         _("move {label}").format(label=item.label),
-        lambda s: on_floor_of_room(edits.move(s, item.id, pose), item.id),
+        lambda s: attach_to_room_floor(edits.move(s, item.id, pose), item.id),
         by=client,
         merge_key=f"{NUDGE_MERGE} {item.id} {field}",
         by_hand=True,

@@ -13,7 +13,7 @@ from diorama_app.session.client import Client
 from diorama_app.session.units import UNITS, Unit, format_length, in_unit, parse_length
 from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, fold_button, library_text, text
-from diorama_core.arrangement.explain import in_words, strongest
+from diorama_core.arrangement.explain import reason_text, strongest
 from diorama_core.artefacts import Reason
 from diorama_core.editing.clearances import Clearance, clearances
 from diorama_core.errors import InputError
@@ -215,7 +215,7 @@ def _surface(item: SceneObject) -> str:
 
 def _why(reasons: Sequence[Reason]) -> str:
     """What decided most about an object when it was built, in plain words; empty where that is not known."""
-    lines = "".join(f"<li>{library_text(in_words(reason))}</li>" for reason in reasons)
+    lines = "".join(f"<li>{library_text(reason_text(reason))}</li>" for reason in reasons)
     hint = _("What influenced this object most when the scene was built from the photo, and by how much")
     return f'<h4 title="{text(hint)}">{text(_("Why"))}</h4><ul class="why">{lines}</ul>' if lines else ""
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.arrangement.surfaces import outside_m
+from diorama_core.arrangement.surfaces import overhang_m
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.placing import places_of
 from diorama_core.errors import DioramaError
@@ -68,7 +68,7 @@ def floats(scene: Scene, library: ShapeLibrary, item: SceneObject) -> bool:
     tops = [
         p.surface.level
         for p in places_of(Scene(objects=(parent,)), library)
-        if p.upward and outside_m(p.surface, foot) < 0.05
+        if p.upward and overhang_m(p.surface, foot) < 0.05
     ]
     if not tops and _is_beside(foot, parent):
         return low - floor_height(scene) > FLOATING_M

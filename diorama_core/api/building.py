@@ -109,7 +109,7 @@ def build(
         half_turn=half_turn,
         flat=flat,
     )
-    inputs, straightened = _straight(_at_height(read.inputs, camera_height_m), distortion)
+    inputs, straightened = _straight(_set_camera_height(read.inputs, camera_height_m), distortion)
     warnings = (*read.warnings, *straightened)
     for warning in warnings:
         warn(warning)
@@ -118,7 +118,7 @@ def build(
     return _built(inputs, warnings, opened, name, choose, output, progress or Progress())
 
 
-def _at_height(inputs: Inputs, height_m: float | None) -> Inputs:
+def _set_camera_height(inputs: Inputs, height_m: float | None) -> Inputs:
     low, high = CAMERA_HEIGHTS_M
     if height_m is not None and not low <= height_m <= high:
         raise InputError(f"a camera {height_m:g} m above the floor is not possible; give {low:g} to {high:g} m")

@@ -115,7 +115,7 @@ def faces_of(
     if not chosen and not SEEN_THROUGH & set(roles):
         chosen = [s for s in slots if s.main]
     by_mask = detected.mask_confidence >= SETTINGS.sure_mask or item.category in NOT_RECTANGULAR
-    unseen = (hidden | ~detected.mask if by_mask else hidden) | pale_frame(rgb) | _outside(detected)
+    unseen = (hidden | ~detected.mask if by_mask else hidden) | pale_frame(rgb) | _pixels_outside_box(detected)
     made = [_face(item, parts, slot, layout, rgb, (hidden, unseen), detected, camera) for slot in chosen]
     return tuple(face for face in made if face is not None)
 
@@ -165,7 +165,7 @@ def _face(
     return FlatFace(slot, layout, completed_picture(picture, pixel_m), roughness)
 
 
-def _outside(detected: DetectedObject) -> Bool[np.ndarray, "h w"]:
+def _pixels_outside_box(detected: DetectedObject) -> Bool[np.ndarray, "h w"]:
     """Pixels that are not in the object's box: whatever its pose says, they show something else."""
     outside = np.ones(detected.mask.shape, dtype=bool)
     x1, y1, x2, y2 = detected.box

@@ -16,7 +16,7 @@ from diorama_core.appearance.flat_faces import FlatFace, faces_of
 from diorama_core.appearance.irradiance import irradiance_map
 from diorama_core.appearance.light import SHINING, estimated_light
 from diorama_core.appearance.matched_brightness import brightened, brightness_gains
-from diorama_core.appearance.room_cues import SETTINGS, toward_window, wall_shade
+from diorama_core.appearance.room_cues import SETTINGS, wall_shade, window_direction
 from diorama_core.appearance.sets import shared_materials
 from diorama_core.appearance.surface_materials import (
     ROUGHNESS,
@@ -92,7 +92,7 @@ def photo_appearance(
         [item for item in scene.objects if item.id in detected_by_id],
     )
     shades = [shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels]
-    walls, window = wall_shade(rgb, objects, scene), toward_window(rgb, objects, scene)
+    walls, window = wall_shade(rgb, objects, scene), window_direction(rgb, objects, scene)
     light = estimated_light(shades, walls, window)
     red, green, blue = (float(c) / max(illuminant_rgb) for c in illuminant_rgb)
     light = replace(light, colour=(red, green, blue))
@@ -191,10 +191,10 @@ def _seen(
     faces = faces_of(item, parts, rgb, hidden, detected, camera)
     visible = _inner(detected) & ~hidden
     slots = slots_of(parts)
-    unhidden = visible if detected.mask_confidence >= 1.0 else _in_box(detected) & ~hidden
+    unhidden = visible if detected.mask_confidence >= 1.0 else _box_pixels(detected) & ~hidden
     view = surface_view(parts, slots, item.pose, camera, visible | unhidden)
     taken = {face.slot.name for face in faces}
-    behind = _in_box(detected) & ~detected.mask & ~hiding(detected, objects, smaller_only=True)
+    behind = _box_pixels(detected) & ~detected.mask & ~hiding(detected, objects, smaller_only=True)
     pixels = () if view is None else slot_pixels(view, slots, rgb, visible, unhidden, behind, taken)
     read = (p for p in pixels if p.slot.name not in taken)
     whole = tuple(p for p in read if view is not None and not _shines(item, p, view, rgb))
@@ -217,7 +217,7 @@ def _shines(item: SceneObject, pixels: SlotPixels, view: SurfaceView, rgb: UInt8
     return bool(np.median(view.of(rgb)[pixels.near].max(axis=1)) >= SHINING)
 
 
-def _in_box(detected: DetectedObject) -> Bool[np.ndarray, "h w"]:
+def _box_pixels(detected: DetectedObject) -> Bool[np.ndarray, "h w"]:
     inside = np.zeros(detected.mask.shape, dtype=bool)
     x1, y1, x2, y2 = (max(round(v), 0) for v in detected.box)
     inside[y1:y2, x1:x2] = True

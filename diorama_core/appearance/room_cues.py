@@ -78,7 +78,7 @@ def wall_shade(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject
     return Shade(np.array([w.normal for w in alike]), light, cells / cells.sum())
 
 
-def toward_window(
+def window_direction(
     rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], scene: Scene
 ) -> Float[np.ndarray, "3"] | None:
     """Unit vector from what stands in the room to its largest window; None where none is seen by day.

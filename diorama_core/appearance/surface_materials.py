@@ -344,7 +344,7 @@ def appearance_of(
             tile_m,
             roughness,
         )
-    texture = tileable(_in_albedo(example, albedo))
+    texture = tileable(_scale_to_albedo(example, albedo))
     return SlotAppearance(pixels.slot, (red, green, blue), texture, example.texel_m * texture.shape[0], roughness)
 
 
@@ -359,7 +359,7 @@ def _is_plain(
     return pixels.slot.role == PRINTED or shows_plain(view, pixels.near, rgb, weave, tile_m)
 
 
-def _in_albedo(example: Example, albedo: Float[np.ndarray, "3"]) -> Example:
+def _scale_to_albedo(example: Example, albedo: Float[np.ndarray, "3"]) -> Example:
     """The example scaled so that its mean is the slot's albedo."""
     linear = srgb_to_linear(example.colours / 255.0)
     gain = albedo / np.maximum(linear.reshape(-1, 3).mean(axis=0), 1e-4)

@@ -69,7 +69,7 @@ def containing_room(
     if floor is None:
         return scene
     if walls_reasoned:
-        scene = _at_backs(scene, feet_seen, objects_measured)
+        scene = _fit_walls_to_backs(scene, feet_seen, objects_measured)
         if objects_measured:
             scene = _without_far_adherence(scene)
     standing = [o for o in scene.objects if (edge := scene.support_of(o.id)) is not None and edge.parent == floor.id]
@@ -98,7 +98,7 @@ def without_floor_behind_walls(scene: Scene, known: Plane) -> Scene:
     added = here - _section(known.polygon[:, :2])
     trimmed = here
     for wall in scene.architecture.by_role("wall"):
-        drawn = added ^ _behind_wall(wall)
+        drawn = added ^ _area_behind_wall(wall)
         if wall.seen and not any((drawn ^ _section(p)).area() > SETTINGS.behind_share * _area(p) for p in standing):
             trimmed = trimmed - drawn
     if here.area() - trimmed.area() < SETTINGS.min_area_m2:
@@ -107,8 +107,8 @@ def without_floor_behind_walls(scene: Scene, known: Plane) -> Scene:
     return _with_floor_outline(scene, floor, outline)
 
 
-def _behind_wall(wall: Plane) -> manifold3d.CrossSection:
-    """What a wall hides of the plan."""
+def _area_behind_wall(wall: Plane) -> manifold3d.CrossSection:
+    """Part of the plan that a wall hides."""
     level = np.cross([0.0, 0.0, 1.0], wall.normal)
     along = wall.polygon @ level
     ends = [wall.offset * wall.normal + reach * level for reach in (float(along.min()), float(along.max()))]
@@ -143,10 +143,10 @@ def _with_ceiling(scene: Scene) -> Scene:
     return replace(scene, architecture=Architecture((*scene.architecture.planes, ceiling)), supports=supports)
 
 
-def _at_backs(scene: Scene, feet_seen: Collection[str] | None, objects_measured: bool) -> Scene:
-    """The walls where most of what stands against them says: from a photo alone they are as uncertain as objects.
+def _fit_walls_to_backs(scene: Scene, feet_seen: Collection[str] | None, objects_measured: bool) -> Scene:
+    """Move walls to what stands against them: seen in a photo alone, walls are as uncertain as objects.
 
-    Doors say it, too: their feet, which were seen on the floor, are the wall's. What stands before a wall without
+    Doors count, too: their feet, which were seen on the floor, are the wall's. What stands before a wall without
     touching it resists a wall that would come past its back. Each counts as much as its place is certain. What hangs on
     walls and what lies on furniture counts where its place was measured: otherwise it follows from walls and furniture.
     """
@@ -163,7 +163,7 @@ def _at_backs(scene: Scene, feet_seen: Collection[str] | None, objects_measured:
         others = [
             item
             for s in edges
-            if wall.id not in s.adheres_to and _behind(item := scene.object(s.child), wall, np.inf) < np.inf
+            if wall.id not in s.adheres_to and _wall_gap_m(item := scene.object(s.child), wall, np.inf) < np.inf
         ]
         backs, certainty = _backs(against, wall, feet_seen)
         before, before_certainty = _backs(others, wall, feet_seen)
@@ -182,11 +182,11 @@ def _at_backs(scene: Scene, feet_seen: Collection[str] | None, objects_measured:
 def _without_far_adherence(scene: Scene) -> Scene:
     """The scene without "against the wall" where an object was measured away from a wall that the photo shows."""
 
-    def near(edge: Support) -> tuple[str, ...]:
+    def near_walls(edge: Support) -> tuple[str, ...]:
         item = scene.object(edge.child)
         return tuple(w for w in edge.adheres_to if abs(_back(item, scene.plane(w))) < SETTINGS.clearly_m)
 
-    return replace(scene, supports=tuple(replace(s, adheres_to=near(s)) for s in scene.supports))
+    return replace(scene, supports=tuple(replace(s, adheres_to=near_walls(s)) for s in scene.supports))
 
 
 def _backs(
@@ -247,7 +247,7 @@ def _given_way(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene
     # Of what was seen, something hangs on the wall: it says where the wall is, within the room that it leaves.
     backs = [float((o.corners_world @ wall.normal).min()) - wall.offset for o in _hanging(scene, wall_id)]
     inward = float(np.median(backs)) if backs else 0.0
-    deepest = min((_behind(o, wall, inward) for o in standing), default=inward)
+    deepest = min((_wall_gap_m(o, wall, inward) for o in standing), default=inward)
     if inward == 0.0 and deepest == inward:
         return scene
     try:
@@ -286,9 +286,10 @@ def _drawn_out(scene: Scene, wall_id: str) -> Scene:
     return replace(scene, architecture=Architecture(planes))
 
 
-def _behind(item: SceneObject, wall: Plane, inward_m: float = 0.0) -> float:
-    """Height of an object's hindmost corner before a wall, where that is less than the height at which it is wanted;
-    that height for other objects, and for those beside the wall or behind it.
+def _wall_gap_m(item: SceneObject, wall: Plane, inward_m: float = 0.0) -> float:
+    """Distance of an object's hindmost corner before a wall, at most and by default `inward_m`.
+
+    The default is given for objects beside the wall or behind it.
     """
     if not _is_between_ends(item, wall) or float(item.pose.position @ wall.normal) < wall.offset:
         return inward_m
@@ -299,7 +300,7 @@ def _footprint(scene: Scene, item: SceneObject) -> Float[np.ndarray, "k 2"]:
     """What an object covers of the floor before the walls that were seen, counter-clockwise in plan."""
     polygon = np.column_stack([_box_footprint(item), np.zeros(4)])
     for wall in scene.architecture.by_role("wall"):
-        if wall.seen and _behind(item, wall) < 0.0:
+        if wall.seen and _wall_gap_m(item, wall) < 0.0:
             level = wall.normal * [1.0, 1.0, 0.0]
             polygon = clip_polygon(polygon, level, wall.offset)
     return polygon[:, :2]
@@ -314,7 +315,7 @@ def _box_footprint(item: SceneObject) -> Float[np.ndarray, "4 2"]:
 def _with_floor_under(scene: Scene, prints: list[Float[np.ndarray, "_ 2"]]) -> Scene:
     floor = scene.architecture.floor
     assert floor is not None
-    missing = _beside_floor(floor, prints)
+    missing = _footprints_off_floor(floor, prints)
     if not missing:
         return scene
     sections = [_section(floor.polygon[:, :2]), *map(_section, missing)]
@@ -326,7 +327,7 @@ def _with_floor_under(scene: Scene, prints: list[Float[np.ndarray, "_ 2"]]) -> S
     return _with_floor_outline(scene, floor, outline)
 
 
-def _beside_floor(floor: Plane, prints: list[Float[np.ndarray, "_ 2"]]) -> list[Float[np.ndarray, "_ 2"]]:
+def _footprints_off_floor(floor: Plane, prints: list[Float[np.ndarray, "_ 2"]]) -> list[Float[np.ndarray, "_ 2"]]:
     """The footprints that are not on the floor altogether."""
     here = _section(floor.polygon[:, :2])
     return [p for p in prints if _area(p) - (_section(p) ^ here).area() > SETTINGS.min_area_m2]

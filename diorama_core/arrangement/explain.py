@@ -60,8 +60,8 @@ def strongest(reasons: Sequence[Reason], object_id: str, count: int = 2) -> tupl
     return tuple(first.values())[:count]
 
 
-def in_words(reason: Reason) -> str:
-    """A reason as people read it, with what it counts: `Kind: named “chair” by you (6.2)`."""
+def reason_text(reason: Reason) -> str:
+    """A reason in words, with its amount: `Kind: named “chair” by you (6.2)`."""
     amount = f"{reason.amount:.0f} cm" if reason.unit == "cm" else f"{reason.amount:.1f}"
     return f"{HEADINGS[reason.decision]}: {reason.sentence} ({amount})"
 

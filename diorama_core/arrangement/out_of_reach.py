@@ -13,7 +13,7 @@ from diorama_core.arrangement.surfaces import (
     choose_surface,
     is_soft,
     label_of,
-    outside_m,
+    overhang_m,
     plane_surface,
     reaches,
     resting_cost,
@@ -74,7 +74,7 @@ def is_out_of_reach(
         plane = plane_surface(scene.plane(edge.parent))
         away = resting_cost(scene, item, edge, plane)
         # How far the floor reaches is a guess where it was not seen; how high it is, is not.
-        return away - outside_m(plane, item.pose.position) > OUT_OF_REACH_M
+        return away - overhang_m(plane, item.pose.position) > OUT_OF_REACH_M
     parent = scene.object(edge.parent)
     place = choose_surface(scene, item, edge, library.shape(parent.shape_id)).in_world(parent.pose)
     if edge.relation == "mounted on":

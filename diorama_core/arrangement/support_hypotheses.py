@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.arrangement.surfaces import RestingSurface, choose_contact, object_surfaces, outside_m, plane_surface
+from diorama_core.arrangement.surfaces import RestingSurface, choose_contact, object_surfaces, overhang_m, plane_surface
 from diorama_core.library import taxonomy
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import Category
@@ -87,19 +87,20 @@ def support_hypotheses(
     }
     return {
         item.id: (
-            *(_on_plane(scene, item, plane, noise, evidence) for plane in scene.architecture.planes),
+            *(_plane_hypothesis(scene, item, plane, noise, evidence) for plane in scene.architecture.planes),
             *(
                 hypothesis
                 for other in scene.objects
                 if other.id != item.id
-                and (hypothesis := _on_object(scene, item, other, surfaces[other.id], noise, evidence)) is not None
+                and (hypothesis := _object_hypothesis(scene, item, other, surfaces[other.id], noise, evidence))
+                is not None
             ),
         )
         for item in scene.objects
     }
 
 
-def _on_plane(
+def _plane_hypothesis(
     scene: Scene, item: SceneObject, plane: Plane, noise: ObservationNoise, evidence: SupportEvidence
 ) -> SupportHypothesis:
     edge = Support(item.id, plane.id, "placed on" if plane.role == "floor" else "mounted on")
@@ -110,7 +111,7 @@ def _on_plane(
     wall = plane.role == "wall"
     sight = np.zeros(3) if scene.camera is None else item.pose.position - scene.camera.position
     # How far the floor reaches is a guess where it was not seen; how high it is, is not.
-    beside_m = 0.0 if plane.role == "floor" else outside_m(surface, item.pose.position)
+    beside_m = 0.0 if plane.role == "floor" else overhang_m(surface, item.pose.position)
     return SupportHypothesis(
         edge,
         plane.role,
@@ -123,7 +124,7 @@ def _on_plane(
     )
 
 
-def _on_object(
+def _object_hypothesis(
     scene: Scene,
     item: SceneObject,
     other: SceneObject,
@@ -142,7 +143,7 @@ def _on_object(
     candidates: list[tuple[float, int, float, float]] = []
     for index, place in enumerate(places):
         gap = abs(foot - place.level) / tolerance
-        outside = outside_m(place, item.pose.position) / _width_m(item)
+        outside = overhang_m(place, item.pose.position) / _width_m(item)
         over = max(height - place.clearance_m, 0.0) / height
         candidates.append((min(gap, 6.0) + outside + over, index, gap, outside))
     edge = Support(item.id, other.id)
@@ -208,10 +209,12 @@ def seen_below(masks: Mapping[str, Bool[np.ndarray, "h w"]]) -> dict[str, dict[s
     owners = np.full(masks[names[0]][::step, ::step].shape, -1)
     for k, name in enumerate(names):
         owners[masks[name][::step, ::step]] = k
-    return {name: {names[other]: share for other, share in _below(owners, k).items()} for k, name in enumerate(names)}
+    return {
+        name: {names[other]: share for other, share in _shares_below(owners, k).items()} for k, name in enumerate(names)
+    }
 
 
-def _below(owners: np.ndarray, k: int) -> dict[int, float]:
+def _shares_below(owners: np.ndarray, k: int) -> dict[int, float]:
     mine = owners == k
     rows, columns = np.flatnonzero(mine.any(axis=1)), np.flatnonzero(mine.any(axis=0))
     if not len(rows):

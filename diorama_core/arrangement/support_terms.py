@@ -44,8 +44,8 @@ def gap(h: SupportHypothesis) -> float:
     return float(np.clip(h.gap - 1.0, 0.0, FAR_TOLERANCES)) / FAR_TOLERANCES
 
 
-def beside(h: SupportHypothesis) -> float:
-    """How far an object on a wall or ceiling is beside it."""
+def distance_beside(h: SupportHypothesis) -> float:
+    """Distance of an object from the wall or ceiling that it is beside, as a share of `FAR_WIDTHS`."""
     return min(h.outside, FAR_WIDTHS) / FAR_WIDTHS if h.role in ("wall", "ceiling") else 0.0
 
 
@@ -75,7 +75,7 @@ def portable(h: SupportHypothesis) -> float:
 TERMS: tuple[SupportTerm, ...] = (
     SupportTerm("other belief", "boxes and depth say so", lambda h: float(not h.believed)),
     SupportTerm("gap", "it was seen there", gap),
-    SupportTerm("beside", "it was seen in front of it", beside),
+    SupportTerm("beside", "it was seen in front of it", distance_beside),
     SupportTerm("turned", "its back is parallel to it", lambda h: h.turned),
     SupportTerm("averted", "the wall faces the camera", lambda h: float(h.averted)),
     SupportTerm("company", "{kind} is often on {carrier}", company),

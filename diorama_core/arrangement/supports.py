@@ -128,9 +128,9 @@ def with_decided_supports(
         if before is not None and before.parent == edge.parent and before.relation == edge.relation:
             edge = replace(before, adheres_to=())
         elif not noise.measured and choice.hypothesis.role in ("wall", "ceiling"):
-            moved = _along_sight(moved, item, _share_to_plane(moved, item, moved.plane(edge.parent)))
+            moved = _move_along_sight(moved, item, _share_to_plane(moved, item, moved.plane(edge.parent)))
         if not noise.measured and choice.hypothesis.role == "object" and choice.hypothesis.outside >= FARTHEST_WIDTHS:
-            moved = _along_sight(moved, item, _share_to_object(moved, item, moved.object(edge.parent), library))
+            moved = _move_along_sight(moved, item, _share_to_object(moved, item, moved.object(edge.parent), library))
         if choice.hypothesis.role == "floor":
             edge = replace(edge, adheres_to=standing_walls(moved, moved.object(name), noise, weights.walls))
         moved = edits.attach(moved, edge)
@@ -186,7 +186,7 @@ def _share_to_object(scene: Scene, item: SceneObject, carrier: SceneObject, libr
     return float(shares[np.argmin(costs)])
 
 
-def _along_sight(scene: Scene, item: SceneObject, share: float) -> Scene:
+def _move_along_sight(scene: Scene, item: SceneObject, share: float) -> Scene:
     """The scene with an object at a share of its distance and as much smaller: it looks alike in the photo."""
     if scene.camera is None or share == 1.0:
         return scene

@@ -212,7 +212,7 @@ def _nearest_side(item: SceneObject, parent: SceneObject) -> RestingSurface:
 
     def gap(side: RestingSurface) -> float:
         world = side.in_world(parent.pose)
-        return outside_m(world, item.pose.position) + abs(float(world.normal @ item.pose.position) - world.level)
+        return overhang_m(world, item.pose.position) + abs(float(world.normal @ item.pose.position) - world.level)
 
     return min(sides, key=gap)
 
@@ -229,7 +229,7 @@ def box_misfit(corners: Float[np.ndarray, "8 3"], size: Float[np.ndarray, "3"], 
     gap = abs(low - surface.level)
     over = max(height - surface.clearance_m, 0.0)
     squeezed = 1.0 if surface.clearance_m < SMALLEST_CLEARANCE * height else 0.0
-    return gap + outside_m(surface, corners.mean(axis=0)) + 0.5 * over + squeezed + 0.5 * _too_wide(size, surface)
+    return gap + overhang_m(surface, corners.mean(axis=0)) + 0.5 * over + squeezed + 0.5 * _too_wide(size, surface)
 
 
 def reaches(item: SceneObject, surface: RestingSurface) -> bool:
@@ -237,7 +237,7 @@ def reaches(item: SceneObject, surface: RestingSurface) -> bool:
     corners = item.corners_world
     gap = abs(float((corners @ surface.normal).min()) - surface.level)
     wide = max(float(np.ptp(corners @ axis)) for axis in plane_axes(surface.normal))
-    return gap <= OUT_OF_REACH_M and outside_m(surface, item.pose.position) <= max(BESIDE_M, BESIDE_SHARE * wide)
+    return gap <= OUT_OF_REACH_M and overhang_m(surface, item.pose.position) <= max(BESIDE_M, BESIDE_SHARE * wide)
 
 
 def _too_wide(size: Float[np.ndarray, "3"], surface: RestingSurface) -> float:
@@ -248,7 +248,7 @@ def _too_wide(size: Float[np.ndarray, "3"], surface: RestingSurface) -> float:
     return max(min(widths) - room[0], 0.0) + max(max(widths) - room[1], 0.0)
 
 
-def outside_m(surface: RestingSurface, point: Float[np.ndarray, "3"]) -> float:
+def overhang_m(surface: RestingSurface, point: Float[np.ndarray, "3"]) -> float:
     """Distance (in the plane) by which a point's projection misses the surface; 0 inside."""
     return max(float((surface.outward @ point - surface.offset).max()), 0.0)
 
@@ -424,7 +424,7 @@ def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape) -> list[
         return []
     candidates = (surface.in_world(other.pose) for surface in object_surfaces(shape, other))
     centre = item.pose.position
-    return [w for w in candidates if w.level < float(w.normal @ centre) and outside_m(w, centre) < NEAR_SURFACE_M]
+    return [w for w in candidates if w.level < float(w.normal @ centre) and overhang_m(w, centre) < NEAR_SURFACE_M]
 
 
 def resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: RestingSurface) -> float:
@@ -438,4 +438,4 @@ def resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: Restin
     """
     contact = choose_contact(scene, item, edge, surface)
     centre = item.pose.position + item.pose.R_world_object @ (contact * item.size_m / 2)
-    return abs(float(surface.normal @ centre) - surface.level) + outside_m(surface, item.pose.position)
+    return abs(float(surface.normal @ centre) - surface.level) + overhang_m(surface, item.pose.position)

@@ -30,9 +30,9 @@ def align(scene: Scene, ids: Sequence[str], axis: Float[np.ndarray, "3"], anchor
     """
     chosen = _movable(scene, ids, least=2)
     spans = {i: _span(scene, i, axis) for i in chosen}
-    target = _at(_span(scene, ids[-1], axis), anchor)
+    target = _anchor_value(_span(scene, ids[-1], axis), anchor)
     for i in chosen:
-        scene = _shift(scene, i, axis, target - _at(spans[i], anchor))
+        scene = _shift(scene, i, axis, target - _anchor_value(spans[i], anchor))
     return scene
 
 
@@ -104,7 +104,7 @@ def _span(scene: Scene, object_id: str, axis: np.ndarray) -> tuple[float, float]
     return float(along.min()), float(along.max())
 
 
-def _at(span: tuple[float, float], anchor: Anchor) -> float:
+def _anchor_value(span: tuple[float, float], anchor: Anchor) -> float:
     return {"low": span[0], "middle": (span[0] + span[1]) / 2, "high": span[1]}[anchor]
 
 

@@ -97,7 +97,7 @@ def free_offset(scene: Scene, clip: Clip) -> Float[np.ndarray, "3"]:
     low = np.min([o.corners_world.min(axis=0) for o in heads], axis=0)
     high = np.max([o.corners_world.max(axis=0) for o in heads], axis=0)
     allowed = _extent_below(scene, heads, carried)
-    along = _along_wall(scene, heads, carried)
+    along = _wall_direction(scene, heads, carried)
     if along is None:
         step = np.append((high - low)[:2] + GAP_M, 0.0)
         ways = [np.append(way, 0.0) * step for way in WAYS]
@@ -119,7 +119,7 @@ def free_offset(scene: Scene, clip: Clip) -> Float[np.ndarray, "3"]:
     return next((offset for offset in offsets if fits(offset)), np.array(BESIDE_M))
 
 
-def _along_wall(scene: Scene, heads: list[SceneObject], carried: dict[str, str]) -> Float[np.ndarray, "3"] | None:
+def _wall_direction(scene: Scene, heads: list[SceneObject], carried: dict[str, str]) -> Float[np.ndarray, "3"] | None:
     """The level direction of the wall that all copies hang on; None where they do not hang on one."""
     parents = {carried.get(o.id) for o in heads}
     parent = parents.pop() if len(parents) == 1 else None

@@ -13,7 +13,15 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.arrangement.surfaces import RestingSurface, plane_surface
-from diorama_core.editing.placing import SupportTarget, fits, hits_along, inside, places_of, to_wall, within_wall
+from diorama_core.editing.placing import (
+    SupportTarget,
+    clamp_to_wall,
+    fits,
+    hits_along,
+    nearest_point,
+    places_of,
+    to_wall,
+)
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rooms import part_of_home, rooms_of_objects
 from diorama_core.layout.feasible.local import DragSolver
@@ -162,7 +170,7 @@ class Slide:
                 return item.pose.moved(target - base), hit.place
         ground = [p for p in self.places if not p.of_object]
         for hit in hits_along(eye, direction, ground, lift_m=lift, slack_m=100.0):
-            point = inside(hit.place.surface, hit.point)
+            point = nearest_point(hit.place.surface, hit.point)
             target = np.array([*(point - reach)[:2], hit.place.surface.level])
             return item.pose.moved(target - base), hit.place
         level = self._level(eye, direction)
@@ -192,7 +200,7 @@ class Slide:
         position = _clamped_to(outward, position, item)
         pose = Pose(turn @ item.pose.R_world_object, position, item.pose.scale)
         wall = self.scene.plane(hit.place.parent) if self.scene.has_plane(hit.place.parent) else None
-        return (pose if wall is None else within_wall(replace(item, pose=pose), wall)), hit.place
+        return (pose if wall is None else clamp_to_wall(replace(item, pose=pose), wall)), hit.place
 
     def _start_surface(self) -> RestingSurface:
         edge = self.scene.support_of(self.item.id)
@@ -240,4 +248,4 @@ def _turn(before: np.ndarray, after: np.ndarray) -> np.ndarray:
 def _clamped_to(surface: RestingSurface, position: np.ndarray, item: SceneObject) -> np.ndarray:
     """The centre moved so that the object's middle stays over the surface."""
     foot = position - (float(surface.normal @ position) - surface.level) * surface.normal
-    return position + inside(surface, foot) - foot
+    return position + nearest_point(surface, foot) - foot

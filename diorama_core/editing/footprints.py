@@ -58,8 +58,8 @@ def gaps(quads: Quads, other: Outline) -> Float[np.ndarray, "n"]:
     return np.where(overlapping(quads, other, 0.0), 0.0, near)
 
 
-def within(quads: Quads, outline: Outline, slack_m: float = 0.002) -> Bool[np.ndarray, "n"]:
-    """Which outlines lie inside a room's, convex or not, up to a slack."""
+def lie_within(quads: Quads, outline: Outline, slack_m: float = 0.002) -> Bool[np.ndarray, "n"]:
+    """True for outlines inside a room's, convex or not, up to a slack."""
     centre = quads.mean(axis=1, keepdims=True)
     drawn_in = quads + (centre - quads) * slack_m / np.maximum(
         np.linalg.norm(centre - quads, axis=-1, keepdims=True), slack_m

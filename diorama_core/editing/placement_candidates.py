@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.editing.collisions import WALKED_ON_M
-from diorama_core.editing.footprints import footprint_of, gaps, overlapping, within
+from diorama_core.editing.footprints import footprint_of, gaps, lie_within, overlapping
 from diorama_core.editing.habits import carries, host_cost, pushed_under, stands
 from diorama_core.editing.placing import places_of
 from diorama_core.editing.relations import Relation, Stances
@@ -64,12 +64,12 @@ def candidates_for(
     on = [t for r in relations if r.kind == "on" for t in r.targets if scene.has_object(t)]
     above = [t for r in relations if r.kind == "above" for t in r.targets if scene.has_object(t)]
     if on:
-        return _on_objects(scene, item, on, library)
+        return _object_candidates(scene, item, on, library)
     if mount == "wall":
-        return [_on_walls(scene, item, above, frame)]
+        return [_wall_candidates(scene, item, above, frame)]
     if mount == "ceiling":
-        return [_on_ceiling(scene, item, above, frame)]
-    floor = [_on_floor(scene, item, relations, frame)]
+        return [_ceiling_candidates(scene, item, above, frame)]
+    floor = [_floor_candidates(scene, item, relations, frame)]
     if mount == "surface":
         named = [t for r in relations for t in r.targets if scene.has_object(t)]
         carriers = [o.id for o in scene.objects if carries(o) and o.id not in named]
@@ -78,23 +78,23 @@ def candidates_for(
             c for c in carriers
             if any(_apart(scene.object(c), scene.object(t)) < WITHIN_REACH_M for t in named)
         ]  # fmt: skip
-        on_objects = _on_objects(scene, item, beside_named if named else carriers + targets, library)
+        on_objects = _object_candidates(scene, item, beside_named if named else carriers + targets, library)
         return [*on_objects, *_less_likely(floor)] if named else on_objects or floor
     return floor
 
 
-def _on_floor(scene: Scene, item: SceneObject, relations: Sequence[Relation], frame: RoomFrame) -> Candidates:
+def _floor_candidates(scene: Scene, item: SceneObject, relations: Sequence[Relation], frame: RoomFrame) -> Candidates:
     stances = _floor_stances(scene, item, relations, frame)
     count = len(stances.places)
     quads = stances.quads
-    usable = within(quads, frame.outline)
+    usable = lie_within(quads, frame.outline)
     usable &= ~_blocked(scene, item, quads, relations)
     support = None if frame.floor_id is None else Support(item.id, frame.floor_id)
     base = np.full(count, frame.floor_m)
     supports: list[Support | None] = [support] * count
     if item.category not in having("rug"):
         for rug in (o for o in scene.objects if o.category in having("rug")):
-            on = np.array(within(quads, footprint_of(rug), 0.001))
+            on = np.array(lie_within(quads, footprint_of(rug), 0.001))
             base[on] = float(rug.corners_world[:, 2].max())
             for k in np.flatnonzero(on):
                 supports[k] = Support(item.id, rug.id)
@@ -120,7 +120,7 @@ def _floor_stances(scene: Scene, item: SceneObject, relations: Sequence[Relation
     targets = [scene.object(t) for r in relations for t in r.targets if scene.has_object(t)]
     turns = frame.axis_rad + np.arange(4) * np.pi / 2
     for target in targets:
-        for xy, yaw in _about(target, item):
+        for xy, yaw in _places_around(target, item):
             add(xy, yaw)
     if len(targets) > 1:
         middle = np.mean([t.pose.position[:2] for t in targets], axis=0)
@@ -137,7 +137,7 @@ def _floor_stances(scene: Scene, item: SceneObject, relations: Sequence[Relation
     return Stances(item.size_m, np.concatenate(places), np.concatenate(yaws))
 
 
-def _about(target: SceneObject, item: SceneObject) -> list[tuple[Float[np.ndarray, "n 2"], float]]:
+def _places_around(target: SceneObject, item: SceneObject) -> list[tuple[Float[np.ndarray, "n 2"], float]]:
     """Places on the four sides of a target, at several distances and shifts, with headings in quarter turns to it."""
     candidates = []
     half, yaw0 = target.size_m[:2] / 2, target.pose.yaw_rad
@@ -183,7 +183,9 @@ def _blocked(
     return hit
 
 
-def _on_objects(scene: Scene, item: SceneObject, hosts: Sequence[str], library: ShapeLibrary) -> list[Candidates]:
+def _object_candidates(
+    scene: Scene, item: SceneObject, hosts: Sequence[str], library: ShapeLibrary
+) -> list[Candidates]:
     candidates: list[Candidates] = []
     usual = category(item.category).mount
     for place in places_of(scene, library):
@@ -205,10 +207,10 @@ def _on_objects(scene: Scene, item: SceneObject, hosts: Sequence[str], library: 
         stances = Stances(item.size_m, places, turns)
         quads = stances.quads
         foot = _smaller(stances, 1.0 - OVERHANG if usual == "surface" or item.category == "plant" else 1.0).quads
-        usable = np.array(within(foot, outline, 0.01))
+        usable = np.array(lie_within(foot, outline, 0.01))
         middle = 0.5 * (low + high)
         off = np.abs(np.concatenate([flat] * len(yaws)) - middle) / np.maximum((high - low) / 2, 0.05)
-        extra = 0.15 * off.sum(axis=1) + 0.4 * ~np.array(within(quads, outline, 0.01))
+        extra = 0.15 * off.sum(axis=1) + 0.4 * ~np.array(lie_within(quads, outline, 0.01))
         if item.category in having("along_the_back"):
             extra += 0.3 * (np.concatenate([flat] * len(yaws))[:, 0] - low[0]) / max(float(high[0] - low[0]), 0.05)
         if item.category in having("near_the_edge"):
@@ -225,7 +227,7 @@ def _on_objects(scene: Scene, item: SceneObject, hosts: Sequence[str], library: 
     return candidates
 
 
-def _on_walls(scene: Scene, item: SceneObject, above: Sequence[str], frame: RoomFrame) -> Candidates:
+def _wall_candidates(scene: Scene, item: SceneObject, above: Sequence[str], frame: RoomFrame) -> Candidates:
     places, yaws, base, extra, usable = [], [], [], [], []
     supports: list[Support | None] = []
     height, width = float(item.size_m[2]), float(item.size_m[1])
@@ -264,14 +266,14 @@ def _on_walls(scene: Scene, item: SceneObject, above: Sequence[str], frame: Room
     return Candidates(stances, np.array(base), supports, np.array(extra), np.array(usable, dtype=bool))
 
 
-def _on_ceiling(scene: Scene, item: SceneObject, above: Sequence[str], frame: RoomFrame) -> Candidates:
+def _ceiling_candidates(scene: Scene, item: SceneObject, above: Sequence[str], frame: RoomFrame) -> Candidates:
     low, high = frame.outline.min(axis=0), frame.outline.max(axis=0)
     steps = [np.linspace(a, b, 15)[1:-1] for a, b in zip(low, high, strict=True)]
     xs, ys = np.meshgrid(*steps)
     hosts = [scene.object(i).pose.position[:2] for i in above]
     places = np.concatenate([np.column_stack([xs.ravel(), ys.ravel()]), frame.middle[None], *(h[None] for h in hosts)])
     stances = Stances(item.size_m, places, np.full(len(places), frame.axis_rad))
-    usable = np.array(within(stances.quads, frame.outline))
+    usable = np.array(lie_within(stances.quads, frame.outline))
     top = frame.floor_m + 2.5
     if frame.ceiling is not None:
         n = frame.ceiling.normal

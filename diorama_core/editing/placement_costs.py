@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.editing.collisions import WALKED_ON_M
-from diorama_core.editing.footprints import Quads, footprint_of, footprints, overlapping, to_outline, within
+from diorama_core.editing.footprints import Quads, footprint_of, footprints, lie_within, overlapping, to_outline
 from diorama_core.editing.habits import MID_WALL, OFTEN_AT_WALLS, belongs_before, stands
 from diorama_core.editing.placement_candidates import Candidates
 from diorama_core.editing.relations import NO_FRONT, Relation, Stances, is_long, relation_cost
@@ -58,7 +58,7 @@ def placement_costs(
     for relation in usual:
         cost += USUAL_WEIGHT * relation_cost(relation, stances, item.category, known, frame)
     for relation in (*relations, *usual):
-        cost += _beside_siblings(item, relation, stances, known)
+        cost += _sibling_cost(item, relation, stances, known)
     cost += _reverse_costs(item, candidates, known, others, frame)
     if near is not None:
         cost += 0.15 * np.linalg.norm(stances.places - np.asarray(near)[:2], axis=1)
@@ -103,7 +103,7 @@ def _habits(
     cost = np.zeros(len(quads))
     if item.category in having("rug"):
         return cost + 0.05 * np.linalg.norm(stances.places - frame.middle, axis=1)
-    cost += _in_the_way(scene, item, quads, relations) + _askew(item, stances, frame)
+    cost += _obstruction_cost(scene, item, quads, relations) + _askew(item, stances, frame)
     free = any(r.kind in ("in middle", "around", "facing", "between", "opposite") for r in relations)
     walled = item.category in OFTEN_AT_WALLS and not (free and kind == "desk")
     wall_cost = relation_cost(Relation("against wall"), stances, item.category, {}, frame) if frame.walls else 0.0
@@ -131,7 +131,7 @@ def _habits(
     if kind == "bed" and float(item.size_m[1]) > DOUBLE_BED_M:
         roomy = item.size_m + np.array([0.0, 2 * BEDSIDE_M, 0.0])
         sides = Stances(roomy, stances.places, stances.yaws_rad).quads
-        cost += 0.6 * ~within(sides, frame.outline)
+        cost += 0.6 * ~lie_within(sides, frame.outline)
         for quad in door_floors(scene.objects):
             cost += 0.6 * overlapping(sides, quad)
     return cost + _own_front(scene, item, stances, relations, frame)
@@ -145,8 +145,10 @@ def _askew(item: SceneObject, stances: Stances, frame: RoomFrame) -> Float[np.nd
     return ASKEW_COST * np.min(turned, axis=0)
 
 
-def _in_the_way(scene: Scene, item: SceneObject, quads: Quads, relations: Sequence[Relation]) -> Float[np.ndarray, "n"]:
-    """On the floor before doors, windows and furniture."""
+def _obstruction_cost(
+    scene: Scene, item: SceneObject, quads: Quads, relations: Sequence[Relation]
+) -> Float[np.ndarray, "n"]:
+    """Cost of floor before doors, windows and furniture."""
     cost = np.zeros(len(quads))
     for quad in door_floors(scene.objects):
         cost += 4.0 * overlapping(quads, quad)
@@ -172,7 +174,7 @@ def _own_front(
     c, s = np.cos(stances.yaws_rad), np.sin(stances.yaws_rad)
     turns = np.stack([np.stack([c, s], axis=-1), np.stack([-s, c], axis=-1)], axis=-2)
     fronts = sample @ turns + stances.places[:, None]
-    cost = 1.2 * ~np.array(within(fronts, frame.outline))
+    cost = 1.2 * ~np.array(lie_within(fronts, frame.outline))
     for other in scene.objects:
         if other.size_m[2] < WALKED_ON_M or belongs_before(other, item, relations) or not stands(scene, other):
             continue
@@ -180,7 +182,7 @@ def _own_front(
     return cost
 
 
-def _beside_siblings(
+def _sibling_cost(
     item: SceneObject, relation: Relation, stances: Stances, known: Mapping[str, SceneObject]
 ) -> Float[np.ndarray, "n"]:
     """Cost beside others of a kind: one stands on each side of what they are beside or around; opposite something they

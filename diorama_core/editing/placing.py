@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.arrangement.surfaces import RestingSurface, object_surfaces, outside_m, plane_surface
+from diorama_core.arrangement.surfaces import RestingSurface, object_surfaces, overhang_m, plane_surface
 from diorama_core.geometry.openings import DOOR
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene import edits
@@ -104,7 +104,7 @@ def hits_along(
         if distance <= 0:
             continue
         point = origin + distance * direction - lift_m * surface.normal
-        if outside_m(surface, point) <= slack_m:
+        if overhang_m(surface, point) <= slack_m:
             hits.append(Hit(place, point, distance))
     return sorted(hits, key=lambda hit: hit.distance)
 
@@ -123,7 +123,7 @@ def fits(place: SupportTarget, size_m: Float[np.ndarray, "3"], base: Float[np.nd
     if not place.upward or size_m[2] > place.surface.clearance_m + TALLER_M:
         return False
     corners = np.array([[sx * size_m[0] / 2, sy * size_m[1] / 2, 0.0] for sx in (-1, 1) for sy in (-1, 1)]) @ R.T + base
-    over = np.mean([outside_m(place.surface, c) <= 0.02 for c in corners])
+    over = np.mean([overhang_m(place.surface, c) <= 0.02 for c in corners])
     return bool(over >= FITS_SHARE)
 
 
@@ -145,10 +145,10 @@ def seated(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
 
     def far(place: SupportTarget) -> tuple[bool, float]:
         tight = bool(item.size_m[2] > place.surface.clearance_m + TALLER_M)
-        return tight, outside_m(place.surface, base) + abs(place.surface.level - float(base[2]))
+        return tight, overhang_m(place.surface, base) + abs(place.surface.level - float(base[2]))
 
     place = min(options, key=far)
-    target = inside(place.surface, base)
+    target = nearest_point(place.surface, base)
     target = target + (place.surface.level - float(place.surface.normal @ target)) * place.surface.normal
     return edits.move(scene, object_id, item.pose.moved(target - base))
 
@@ -163,7 +163,7 @@ def _box_top(item: SceneObject) -> SupportTarget:
     return SupportTarget(RestingSurface.of(outline, up, float("inf"), of_plane=False), item.id, of_object=True)
 
 
-def inside(surface: RestingSurface, point: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+def nearest_point(surface: RestingSurface, point: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
     """The point of a surface nearest to a point above or beside it (a few projections: outlines are convex)."""
     place = np.array(point, dtype=np.float64)
     for _ in range(12):
@@ -182,7 +182,7 @@ def _hung(item: SceneObject, surface: RestingSurface) -> Pose:
         R, reach = item.pose.R_world_object, float(item.size_m[2]) / 2
     else:
         R, reach = yaw_rotation(float(np.arctan2(n[1], n[0]))), float(item.size_m[0]) / 2
-    position = inside(surface, item.pose.position)
+    position = nearest_point(surface, item.pose.position)
     position = position + (surface.level + reach - float(n @ position)) * n
     return Pose(R, position, item.pose.scale)
 
@@ -209,7 +209,7 @@ def to_wall(item: SceneObject, walls: Iterable[RestingSurface]) -> Pose:
         if abs(np.arctan2(np.sin(turn), np.cos(turn))) > WALL_MAGNET_RAD:
             continue
         gap = float(n @ item.pose.position) - wall.level - item.size_m[0] / 2
-        if abs(gap) <= WALL_MAGNET_M and outside_m(wall, item.pose.position) <= 0.0:
+        if abs(gap) <= WALL_MAGNET_M and overhang_m(wall, item.pose.position) <= 0.0:
             return backed(item, wall)
     return item.pose
 
@@ -233,11 +233,11 @@ def insertion(scene: Scene, shape: Shape, object_id: str, hit: Hit, yaw_rad: flo
     else:
         pose = _hung(replace(item, pose=Pose.upright(hit.point + n * 0.01, yaw_rad)), hit.place.surface)
         if scene.has_plane(hit.place.parent):
-            pose = within_wall(replace(item, pose=pose), scene.plane(hit.place.parent))
+            pose = clamp_to_wall(replace(item, pose=pose), scene.plane(hit.place.parent))
     return replace(item, pose=pose), hit.place.edge(object_id)
 
 
-def within_wall(item: SceneObject, wall: Plane) -> Pose:
+def clamp_to_wall(item: SceneObject, wall: Plane) -> Pose:
     """The pose of what hangs on a wall, inside the wall's height; doors stand at its foot. Ceilings change nothing."""
     if abs(float(wall.normal[2])) > UPWARD:
         return item.pose
@@ -275,7 +275,7 @@ def spot_in_view(
     if not on_ceiling:
         foot = float(scene.plane(place.parent).polygon[:, 2].min())
         point = np.array([point[0], point[1], foot + max(HANGING_HEIGHT_M, shape.size_m[2] / 2)])
-    return Hit(place, inside(place.surface, point), float(np.linalg.norm(point - eye)))
+    return Hit(place, nearest_point(place.surface, point), float(np.linalg.norm(point - eye)))
 
 
 def _width(plane: Plane) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.editing.collisions import Collisions
-from diorama_core.editing.footprints import footprint_of, within
+from diorama_core.editing.footprints import footprint_of, lie_within
 from diorama_core.editing.placement_candidates import Candidates, candidates_for
 from diorama_core.editing.placement_costs import placement_costs
 from diorama_core.editing.relations import Relation
@@ -94,7 +94,7 @@ class Positioner:
     def inside(self, scene: Scene, object_id: str) -> bool:
         """Whether an object's outline is within the room."""
         quad = footprint_of(scene.object(object_id))
-        return bool(within(quad[None], RoomFrame.of(scene).outline, 0.02)[0])
+        return bool(lie_within(quad[None], RoomFrame.of(scene).outline, 0.02)[0])
 
     def nearby(self, scene: Scene, object_id: str) -> Spot | None:
         """The nearest free place on the same level, with the same heading."""
@@ -108,7 +108,7 @@ class Positioner:
                 shift = reach * np.array([np.cos(angle), np.sin(angle), 0.0])
                 trial = edits.move(scene, object_id, item.pose.moved(shift))
                 quad = footprint_of(trial.object(object_id))
-                if bool(within(quad[None], frame.outline)[0]) and not self.collisions.of(trial, moved_ids):
+                if bool(lie_within(quad[None], frame.outline)[0]) and not self.collisions.of(trial, moved_ids):
                     return Spot(trial.object(object_id).pose, edge, float(reach))
         return None
 

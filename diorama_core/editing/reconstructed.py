@@ -41,7 +41,7 @@ def _clear(scene: Scene, object_id: str, library: ShapeLibrary) -> Scene:
     """The scene with an object that meets no other one and is in the room."""
     positioner = Positioner(library)
     met = [j for pair in positioner.collisions.of(scene, [object_id]) for j in pair if j != object_id]
-    outside = not _in_room(positioner, scene, object_id)
+    outside = not _is_in_room(positioner, scene, object_id)
     if not met and not outside:
         return scene
     carriers = [o.id for o in scene.objects if o.id != object_id] if outside else []
@@ -57,8 +57,8 @@ def _clear(scene: Scene, object_id: str, library: ShapeLibrary) -> Scene:
     return scene if spot is None else positioner.put(scene, item, spot)
 
 
-def _in_room(positioner: Positioner, scene: Scene, object_id: str) -> bool:
-    """Whether an object is within the floor's outline and not below it; true in a scene without a floor."""
+def _is_in_room(positioner: Positioner, scene: Scene, object_id: str) -> bool:
+    """True for an object within the floor's outline and not below it; true in a scene without a floor."""
     item = scene.object(object_id)
     if scene.architecture.floor is None:
         return True

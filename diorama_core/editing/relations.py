@@ -121,7 +121,7 @@ def relation_cost(
     if relation.kind == "against wall":
         return _against_wall(stances, frame, relation.toward)
     if relation.kind == "in corner":
-        return _in_corner(stances, frame, relation.toward)
+        return _corner_cost(stances, frame, relation.toward)
     if relation.kind == "in middle":
         extent = np.ptp(frame.outline, axis=0) * MIDDLE_SHARE
         return np.maximum(np.abs(stances.places - frame.middle) / np.maximum(extent, 0.1) - 1.0, 0.0).max(axis=1)
@@ -129,7 +129,7 @@ def relation_cost(
     if not present:
         return np.full(len(stances.places), 2.0)
     if relation.kind == "between":
-        return _between(stances, present) if len(present) > 1 else np.full(len(stances.places), 2.0)
+        return _cost_between(stances, present) if len(present) > 1 else np.full(len(stances.places), 2.0)
     cost = np.zeros(len(stances.places))
     for target in present:
         cost = cost + _to_target(relation.kind, stances, kind, target, relation.aside_m)
@@ -179,14 +179,14 @@ def _to_target(
     return np.zeros(len(local)) if cost is None else cost(relative)
 
 
-def _over(r: _Relative) -> Float[np.ndarray, "n"]:
+def _cost_over(r: _Relative) -> Float[np.ndarray, "n"]:
     outside = np.maximum(np.abs(r.local) - r.half, 0.0).sum(axis=1) / 0.3
     return outside + 0.2 * np.abs(r.local).sum(axis=1) * (r.kind != "on")
 
 
-def _beside(r: _Relative) -> Float[np.ndarray, "n"]:
+def _cost_beside(r: _Relative) -> Float[np.ndarray, "n"]:
     if category(r.target.category).mount == "wall":
-        return _by_window(r)
+        return _cost_by_window(r)
     if broad(r.name) == broad(r.target.category) == "bed":
         heading = _angle(r.stances.yaws_rad, np.full(len(r.local), r.target.pose.yaw_rad))
         off_side = np.maximum(r.half[1] - np.abs(r.local[:, 1]), 0.0) / 0.3 + np.abs(r.local[:, 0]) / 0.6
@@ -200,20 +200,20 @@ def _beside(r: _Relative) -> Float[np.ndarray, "n"]:
     return far + 0.4 * np.minimum(off_side, 2.0) + 0.4 * ahead + 0.6 * np.minimum(not_side, 1.0) + 0.2 * r.gap
 
 
-def _near(r: _Relative) -> Float[np.ndarray, "n"]:
+def _cost_near(r: _Relative) -> Float[np.ndarray, "n"]:
     if category(r.target.category).mount == "wall":
-        return _by_window(r)
+        return _cost_by_window(r)
     return np.maximum(r.gap - NEAR_M, 0.0) / 0.4 + 0.1 * r.gap
 
 
-def _by_window(r: _Relative) -> Float[np.ndarray, "n"]:
-    """Before what is on a wall, or next to it."""
+def _cost_by_window(r: _Relative) -> Float[np.ndarray, "n"]:
+    """Cost of places that are neither before what is on a wall nor next to it."""
     corners = (r.stances.quads - r.stances.places[:, None]) @ r.target.pose.R_world_object[:2, 1]
     aside = np.maximum(np.abs(r.local[:, 1]) - r.half[1] - np.abs(corners).max(axis=1), 0.0)
     return np.maximum(r.gap - 0.5, 0.0) / 0.3 + aside / 0.5 + 0.1 * r.gap
 
 
-def _before_or_behind(r: _Relative) -> Float[np.ndarray, "n"]:
+def _cost_before_or_behind(r: _Relative) -> Float[np.ndarray, "n"]:
     sign = 1.0 if r.kind == "in front of" else -1.0
     ahead = sign * r.local[:, 0] - r.half[0]
     aside = np.maximum(np.abs(r.local[:, 1]) - r.half[1], 0.0)
@@ -223,7 +223,7 @@ def _before_or_behind(r: _Relative) -> Float[np.ndarray, "n"]:
         + aside / 0.3
         + np.maximum(r.gap - 1.0, 0.0) / 0.4
         + (0.1 if r.aside_m == 0.0 else 0.5) * off
-        + _at_use(r.name, r.target, r.gap)
+        + _use_distance_cost(r.name, r.target, r.gap)
         + 0.4 * _across(r.stances, r.target)
     )
 
@@ -236,7 +236,7 @@ def _left_or_right(r: _Relative) -> Float[np.ndarray, "n"]:
     return np.maximum(-aside, 0.0) / 0.2 + ahead / 0.4 + np.maximum(r.gap - NEAR_M, 0.0) / 0.4 + 0.15 * r.gap
 
 
-def _around(r: _Relative) -> Float[np.ndarray, "n"]:
+def _cost_around(r: _Relative) -> Float[np.ndarray, "n"]:
     half, local, yaws = r.half, r.local, r.stances.yaws_rad
     seat, at_front = np.zeros(len(local)), np.zeros(len(local))
     if _is_seat(r.name):  # a long table is looked at across, not along to its middle
@@ -286,14 +286,15 @@ def _aligned(r: _Relative) -> Float[np.ndarray, "n"]:
 
 
 _COSTS: dict[RelationKind, Callable[[_Relative], Float[np.ndarray, "n"]]] = {
-    "on": _over, "under": _over, "above": _over, "beside": _beside, "near": _near, "around": _around,
-    "in front of": _before_or_behind, "behind": _before_or_behind, "left of": _left_or_right,
-    "right of": _left_or_right, "facing": _facing, "opposite": _opposite, "aligned with": _aligned,
+    "on": _cost_over, "under": _cost_over, "above": _cost_over, "beside": _cost_beside, "near": _cost_near,
+    "around": _cost_around, "in front of": _cost_before_or_behind, "behind": _cost_before_or_behind,
+    "left of": _left_or_right, "right of": _left_or_right, "facing": _facing, "opposite": _opposite,
+    "aligned with": _aligned,
 }  # fmt: skip
 
 
-def _at_use(name: str, target: SceneObject, gap_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
-    """Footstools are before the seat, benches at the bed's foot, and nobody sits in the fire."""
+def _use_distance_cost(name: str, target: SceneObject, gap_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+    """Cost by distance: footstools are before the seat, benches at the bed's foot, nobody sits in the fire."""
     within_m, too_hot_m = category(name).used_within_m, category(target.category).too_hot_m or 0.0
     far = 0.0 if within_m is None else 0.6 * np.maximum(gap_m - within_m, 0.0)
     return far + 0.6 * np.maximum(too_hot_m - gap_m, 0.0)
@@ -333,7 +334,7 @@ def _angle(a: Float[np.ndarray, "n"], b: Float[np.ndarray, "n"]) -> Float[np.nda
     return np.abs(np.arctan2(np.sin(a - b), np.cos(a - b)))
 
 
-def _between(stances: Stances, objects: list[SceneObject]) -> Float[np.ndarray, "n"]:
+def _cost_between(stances: Stances, objects: list[SceneObject]) -> Float[np.ndarray, "n"]:
     a, b = objects[0].pose.position[:2], objects[1].pose.position[:2]
     along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-6)
     t = (stances.places - a) @ along / max(float(np.linalg.norm(b - a)), 1e-6)
@@ -362,7 +363,7 @@ def _against_wall(stances: Stances, frame: RoomFrame, toward: tuple[float, float
     return best
 
 
-def _in_corner(stances: Stances, frame: RoomFrame, toward: tuple[float, float] | None) -> Float[np.ndarray, "n"]:
+def _corner_cost(stances: Stances, frame: RoomFrame, toward: tuple[float, float] | None) -> Float[np.ndarray, "n"]:
     corners = [c for c in frame.corners if toward is None or float((c - frame.middle) @ toward) > 0.0]
     if not corners:
         return np.full(len(stances.places), 3.0)

@@ -25,7 +25,7 @@ def set_light(scene: Scene, settings: LightSettings) -> Scene:
 
 def first_daylight(scene: Scene) -> LightSettings:
     """Daylight whose noon sun stands before the largest window, or where the room is open, or where the photo's is."""
-    return replace(scene.light_settings, hour=FIRST_HOUR, north_rad=_toward_sun(scene) - sun_azimuth(12.0, 0.0))
+    return replace(scene.light_settings, hour=FIRST_HOUR, north_rad=_sun_heading_rad(scene) - sun_azimuth(12.0, 0.0))
 
 
 def sun_azimuth(hour: float, north_rad: float) -> float:
@@ -52,7 +52,7 @@ def switch_lamp(scene: Scene, lamp_id: str, *, on: bool) -> LightSettings:
     return replace(scene.light_settings, lamps_on=(*lit, lamp_id) if on else tuple(lit))
 
 
-def _toward_sun(scene: Scene) -> float:
+def _sun_heading_rad(scene: Scene) -> float:
     windows = [o for o in scene.objects if o.category == "window" and not o.hidden]
     corners = [p.polygon for p in scene.architecture.planes]
     if windows and corners:

@@ -69,8 +69,8 @@ def held_again(start: Scene, final: Scene) -> Scene:
     return final
 
 
-def on_floor_of_room(scene: Scene, object_id: str) -> Scene:
-    """An object that stands on a floor of a home, on that of the room where it is now."""
+def attach_to_room_floor(scene: Scene, object_id: str) -> Scene:
+    """Attach an object that stands on a floor of a home to the floor of the room where it is now."""
     edge, floors = scene.support_of(object_id), {r.id: r.floor for r in scene.rooms}
     if edge is None or edge.parent not in floors.values():
         return scene

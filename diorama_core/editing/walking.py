@@ -81,9 +81,9 @@ def walk_of(scene: Scene) -> WalkableFloor | None:
 def free_floor(scene: Scene, radius_m: float) -> BaseGeometry:
     """Where the middle of somebody upright, so wide on each side, may be."""
     floors = [shapely.make_valid(Polygon(p.polygon[:, :2])) for p in scene.architecture.by_role("floor")]
-    doors = [Polygon(_through(footprint_of(o))) for o in scene.objects if o.category == DOOR and not o.hidden]
+    doors = [Polygon(_doorway_footprint(footprint_of(o))) for o in scene.objects if o.category == DOOR and not o.hidden]
     bare = (d for d in doorways(scene) if d.opening.object_id is None and d.opening.is_door)
-    doors += [Polygon(_through(_passage(scene, d))) for d in bare]
+    doors += [Polygon(_doorway_footprint(_passage(scene, d))) for d in bare]
     walls = shapely.unary_union([LineString([f.start, f.end]) for f in wall_feet(scene)])
     edges = shapely.unary_union([walls, *(f.exterior for f in floors if isinstance(f, Polygon))])
     in_way = shapely.unary_union([edges.difference(shapely.unary_union(doors)), *_furniture(scene)])
@@ -106,7 +106,7 @@ def _passage(scene: Scene, way: Doorway) -> Float[np.ndarray, "4 2"]:
     return np.array(way.at) + np.array([-along - deep, along - deep, along + deep, -along + deep])
 
 
-def _through(quad: Float[np.ndarray, "4 2"]) -> Float[np.ndarray, "4 2"]:
+def _doorway_footprint(quad: Float[np.ndarray, "4 2"]) -> Float[np.ndarray, "4 2"]:
     """A door's footprint, as deep as a step before and behind it."""
     middle = quad.mean(axis=0)
     sides = [quad[1] - quad[0], quad[2] - quad[1]]

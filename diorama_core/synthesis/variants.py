@@ -16,7 +16,7 @@ import numpy as np
 from diorama_core.appearance.patterns import COLOURS
 from diorama_core.appearance.surface_finish import KINDS
 from diorama_core.editing.collisions import Collisions
-from diorama_core.editing.footprints import footprint_of, within
+from diorama_core.editing.footprints import footprint_of, lie_within
 from diorama_core.editing.placing import places_of, seated
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.editing.sunlight import first_daylight
@@ -165,7 +165,7 @@ class VariantMaker:
                 trial = edits.move(scene, item.id, replace(pose, R_world_object=R @ pose.R_world_object))
                 if not on_floor:
                     trial = seated(trial, self.library, item.id)
-                outside = on_floor and not within(footprint_of(trial.object(item.id))[None], frame.outline, 0.0)[0]
+                outside = on_floor and not lie_within(footprint_of(trial.object(item.id))[None], frame.outline, 0.0)[0]
                 if not outside and self.collisions.of(trial, moved_ids) <= before:
                     scene = trial
                     break
@@ -192,7 +192,7 @@ class VariantMaker:
                 pose = Pose.upright(at, float(rng.uniform(-np.pi, np.pi)))
                 name = edits.fresh_id(scene, shape.category)
                 item = SceneObject(name, shape.category, shape.category, shape.id, shape.size_m, pose)
-                inside = within(footprint_of(item)[None], place.surface.polygon[:, :2], 0.0)[0]
+                inside = lie_within(footprint_of(item)[None], place.surface.polygon[:, :2], 0.0)[0]
                 trial = edits.insert(scene, item, place.edge(name)) if inside else scene
                 if inside and not self.collisions.of(trial, [name]):
                     scene = trial

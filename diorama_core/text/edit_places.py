@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.editing.footprints import footprint_of, within
+from diorama_core.editing.footprints import footprint_of, lie_within
 from diorama_core.editing.placing import seated
 from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.relations import OF_ROOM, Relation, is_met
@@ -240,7 +240,7 @@ def lifted_onto(scene: Scene, rug_id: str) -> Scene:
             continue
         if category(item.category).mount == "wall" or broad(item.category) == "rug":
             continue
-        if bool(within(footprint_of(item)[None], quad)[0]):
+        if bool(lie_within(footprint_of(item)[None], quad)[0]):
             rise = top - float(item.corners_world[:, 2].min())
             scene = edits.move(scene, item.id, item.pose.moved((0.0, 0.0, rise)))
             scene = edits.attach(scene, Support(item.id, rug_id))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.appearance.room_cues import toward_window, wall_shade
+from diorama_core.appearance.room_cues import wall_shade, window_direction
 from diorama_core.artefacts import DetectedObject
 from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Pose, Scene, SceneObject
@@ -86,9 +86,9 @@ def windowed(level: int) -> tuple[np.ndarray, tuple[DetectedObject, ...], Scene]
 
 
 def test_daylight_comes_from_the_window_and_none_by_night() -> None:
-    by_day = toward_window(*windowed(250))
+    by_day = window_direction(*windowed(250))
     assert by_day is not None
     assert by_day[0] < -0.9
     assert np.linalg.norm(by_day) == pytest.approx(1.0)
-    assert toward_window(*windowed(5)) is None
-    assert toward_window(photo(np.zeros(3)), (), ROOM) is None
+    assert window_direction(*windowed(5)) is None
+    assert window_direction(photo(np.zeros(3)), (), ROOM) is None

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.arrangement.explain import in_words, reasons_of_change, strength, strongest
+from diorama_core.arrangement.explain import reason_text, reasons_of_change, strength, strongest
 from diorama_core.artefacts import Reason
 from diorama_core.scene.types import Support
 from tests.app.small_room import furnished_scene
@@ -22,7 +22,7 @@ def test_the_strongest_reason_of_each_decision_comes_first() -> None:
         Reason("table", "kind", "word", 9.0, "nats", "named “table” by you"),
     )
     assert [r.term for r in strongest(reasons, "chair")] == ["word", "at table"]
-    assert in_words(reasons[1]) == "Front: seats face what they serve (2.1)"
+    assert reason_text(reasons[1]) == "Front: seats face what they serve (2.1)"
     assert not strongest(reasons, "lamp")
 
 
@@ -30,7 +30,7 @@ def test_a_move_counts_as_much_as_it_is_unlikely() -> None:
     near, far = (Reason("chair", "place", "layout", cm, "cm", "clear of others") for cm in (5.0, 15.0))
     assert strength(near) == pytest.approx(0.5)
     assert strength(far) == pytest.approx(4.5)
-    assert in_words(far) == "Place: clear of others (15 cm)"
+    assert reason_text(far) == "Place: clear of others (15 cm)"
 
 
 def test_what_a_rule_moved_put_elsewhere_and_grew_is_told_and_nothing_else() -> None:

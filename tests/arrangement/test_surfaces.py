@@ -19,7 +19,7 @@ from diorama_core.arrangement.surfaces import (
     is_wide_enough,
     misfit,
     object_surfaces,
-    outside_m,
+    overhang_m,
     plane_surface,
     wall_faces,
 )
@@ -82,7 +82,7 @@ def test_rounding_along_a_side_takes_no_corner_away() -> None:
 @given(point=vector)
 def test_outside_is_zero_within_and_grows_outward(point) -> None:
     beyond = max(abs(point[0]) - 1.0, abs(point[1]) - 0.5, 0.0)
-    assert outside_m(TOP, point) == pytest.approx(beyond)
+    assert overhang_m(TOP, point) == pytest.approx(beyond)
 
 
 def item_at(position, size=(0.2, 0.3, 0.4), **more) -> SceneObject:

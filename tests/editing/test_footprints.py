@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.editing.footprints import footprints, gaps, overlapping, to_outline, within
+from diorama_core.editing.footprints import footprints, gaps, lie_within, overlapping, to_outline
 from diorama_core.synthesis.plan import quads_overlap
 
 numbers = st.floats(-3, 3)
@@ -27,5 +27,5 @@ def test_outlines_overlap_as_two_by_two(a: tuple, b: tuple) -> None:
 def test_outlines_stay_within_rooms_with_corners() -> None:
     room = np.array([[0, 0], [4, 0], [4, 2], [2, 2], [2, 4], [0, 4.0]])
     places = np.array([[1, 1], [3, 3], [2.0, 2.0], [0.2, 1]])
-    assert within(footprints(np.ones(2), places, np.zeros(4)), room).tolist() == [True, False, False, False]
+    assert lie_within(footprints(np.ones(2), places, np.zeros(4)), room).tolist() == [True, False, False, False]
     assert to_outline(np.array([[1.0, 0.5]]), room)[0] == pytest.approx(0.5)

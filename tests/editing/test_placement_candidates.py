@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.editing.footprints import footprint_of, overlapping, within
+from diorama_core.editing.footprints import footprint_of, lie_within, overlapping
 from diorama_core.editing.placement_candidates import Candidates, candidates_for
 from diorama_core.editing.relations import Relation
 from diorama_core.editing.room_frame import RoomFrame
@@ -27,7 +27,7 @@ def candidates(what: SceneObject, *relations: Relation) -> list[Candidates]:
 def test_on_the_floor_they_are_within_the_room_and_clear_of_furniture() -> None:
     (floor,) = candidates(item("cabinet", (0.4, 0.8, 1.0), 0.0, 0.0))
     quads = floor.stances.quads[floor.usable]
-    assert within(quads, FRAME.outline).all()
+    assert lie_within(quads, FRAME.outline).all()
     assert not overlapping(quads, footprint_of(SCENE.object("sofa_1")), 0.004).any()
     assert {s.parent for s in floor.supports if s is not None} <= {FRAME.floor_id, "rug_1"}
 

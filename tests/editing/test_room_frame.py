@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from diorama_core.editing.footprints import footprint_of, within
+from diorama_core.editing.footprints import footprint_of, lie_within
 from diorama_core.editing.room_frame import RoomFrame, WallLine, door_floors, front_floor
 from diorama_core.scene.types import Architecture, Scene
 from tests.editing.objects import SOFA, item
@@ -43,6 +43,6 @@ def test_floor_before_furniture_and_doors_is_known() -> None:
 
 def test_a_room_without_architecture_has_a_frame() -> None:
     frame = RoomFrame.of(Scene(objects=(SOFA,)))
-    assert within(footprint_of(SOFA)[None], frame.outline)[0]
+    assert lie_within(footprint_of(SOFA)[None], frame.outline)[0]
     assert frame.walls == ()
     assert RoomFrame.of(Scene(architecture=Architecture())).floor_id is None

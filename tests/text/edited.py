@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from diorama_core.editing.collisions import Collisions
-from diorama_core.editing.footprints import footprint_of, within
+from diorama_core.editing.footprints import footprint_of, lie_within
 from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.library.catalogue import built_in_library
@@ -50,5 +50,5 @@ def assert_sound(before: Scene, after: Scene) -> None:
     for object_id in changed:
         item = after.object(object_id)
         if item.category not in ("window", "door"):
-            assert within(footprint_of(item)[None], outline, 0.03)[0], object_id
+            assert lie_within(footprint_of(item)[None], outline, 0.03)[0], object_id
         assert after.support_of(object_id) is not None

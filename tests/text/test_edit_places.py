@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.editing.footprints import footprint_of, within
+from diorama_core.editing.footprints import footprint_of, lie_within
 from diorama_core.editing.positioning import Positioner
 from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
@@ -89,7 +89,7 @@ def test_a_rug_lifts_what_stands_wholly_on_it(living: Scene) -> None:
     held = set(again.children_of("rug_1"))
     assert held
     for object_id in held:
-        assert within(footprint_of(again.object(object_id))[None], footprint_of(rug))[0]
+        assert lie_within(footprint_of(again.object(object_id))[None], footprint_of(rug))[0]
         assert again.object(object_id).corners_world[:, 2].min() == pytest.approx(rug.corners_world[:, 2].max())
 
 

@@ -50,18 +50,18 @@ def upright(wall: PlaneSheet, floor: PlaneSheet) -> PlaneSheet:
     rows = np.stack([wall.normal, floor.normal, line / length])
     foot = np.linalg.solve(rows, np.array([wall.offset, floor.offset, 0.0]))
     offset = float(normal @ foot)
-    return PlaneSheet(normal, offset, _onto(wall.corners, normal, offset))
+    return PlaneSheet(normal, offset, _project(wall.corners, normal, offset))
 
 
 def joined(floor: PlaneSheet, walls: list[PlaneSheet]) -> list[PlaneSheet]:
     """Walls with feet on the floor and, where two come near their common line, with shared corners on it."""
-    walls = [_on_floor(w, floor) for w in walls]
+    walls = [_snap_to_floor(w, floor) for w in walls]
     for i, j in combinations(range(len(walls)), 2):
         walls[i], walls[j] = _meeting(walls[i], walls[j])
     return walls
 
 
-def _on_floor(wall: PlaneSheet, floor: PlaneSheet) -> PlaneSheet:
+def _snap_to_floor(wall: PlaneSheet, floor: PlaneSheet) -> PlaneSheet:
     height = wall.corners @ floor.normal - floor.offset
     drop = np.where(np.abs(height) < SNAP_M, height, 0.0)
     return replace(wall, corners=wall.corners - drop[:, None] * floor.normal)
@@ -97,7 +97,9 @@ def _nearest_two(
     return two if distance[two].max() < JOIN_M else None
 
 
-def _onto(points: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, "3"], offset: float) -> Float[np.ndarray, "n 3"]:
+def _project(
+    points: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, "3"], offset: float
+) -> Float[np.ndarray, "n 3"]:
     return points - (points @ normal - offset)[:, None] * normal
 
 

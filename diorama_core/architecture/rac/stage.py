@@ -100,12 +100,12 @@ def polygons(layout: RoomLayout, proposals: Proposals, camera: Camera) -> tuple[
         if role != "wall" and number:
             continue
         name = f"wall_{number + 1}" if role == "wall" else role
-        corners = _in_space(outline, cells.inverse_at(p, outline), camera)
+        corners = _unproject(outline, cells.inverse_at(p, outline), camera)
         planes.append(Plane(name, role, _inward(corners, proposals.normals[p]), confidence=CONFIDENCE))
     return tuple(sorted(planes, key=lambda plane: ("floor", "wall", "ceiling").index(plane.role)))
 
 
-def _in_space(
+def _unproject(
     pixels: Float[np.ndarray, "n 2"], inverse: Float[np.ndarray, "n"], camera: Camera
 ) -> Float[np.ndarray, "n 3"]:
     k = camera.intrinsics

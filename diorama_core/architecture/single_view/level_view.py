@@ -161,7 +161,7 @@ def _floor_ratio(
     shape = np.array(lab.shape[1::-1])
     columns, rows = np.moveaxis(np.where(free[..., None], place, 0) * shape, -1, 0).astype(int)
     cells = (lab[rows.clip(0, lab.shape[0] - 1), columns.clip(0, lab.shape[1] - 1)] / LAB_BINS).astype(int)
-    floor = free & _on_sure_floor(headings, slopes, cues)
+    floor = free & _hits_sure_floor(headings, slopes, cues)
     eye = float(cues.camera.position[2])
     wall = free & ((slopes > -eye / SETTINGS.horizon_m) & (slopes < SETTINGS.overhead_slope))[None]
     if min(floor.sum(), wall.sum()) < SETTINGS.enough_seeds:
@@ -181,7 +181,7 @@ def _frequency(cells: Int[np.ndarray, "m k 3"], chosen: Bool[np.ndarray, "m k"])
     return np.asarray(smooth[tuple(np.moveaxis(cells, -1, 0))])
 
 
-def _on_sure_floor(
+def _hits_sure_floor(
     headings: Float[np.ndarray, "m"], slopes: Float[np.ndarray, "k"], cues: RoomCues
 ) -> Bool[np.ndarray, "m k"]:
     """Lines of sight that would meet the floor between the camera and the objects that stand in the room."""

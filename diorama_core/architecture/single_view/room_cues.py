@@ -104,16 +104,16 @@ def gather_room_cues(
     axes = segment_axes(segments, camera)
     oblique, segments, axes = segments[axes < 0], segments[axes >= 0], axes[axes >= 0]
     standing = [o for o in objects if o.category not in _WALL_CATEGORIES]
-    free = ~_inside_masks(segments, standing, rgb.shape[:2])
+    free = ~_lie_on_objects(segments, standing, rgb.shape[:2])
     map_scale = min(1.0, settings.map_side_px / max(rgb.shape[:2]))
     middle = 0.5 * (segments[:, :2] + segments[:, 2:])
     directions, ray_axes, weights = _surface_rays(segments[free], axes[free], camera)
     hung = {o.id for o in objects if category(o.category).mount == "ceiling"}
-    solid = [c for c in cuboids if not _on_wall(c, objects)]
+    solid = [c for c in cuboids if not _is_on_wall(c, objects)]
     corners = np.array([c.corners_world for c in solid]).reshape(-1, 8, 3)
     backed = [c for c in cuboids if _category_of(c, objects) in BACKED]
     backs = np.array([c.corners_world for c in backed]).reshape(-1, 8, 3)
-    oblique = oblique[~_inside_masks(oblique, standing, rgb.shape[:2])]
+    oblique = oblique[~_lie_on_objects(oblique, standing, rgb.shape[:2])]
     slants = _slants(oblique, segments[free], camera, settings)
     return RoomCues(
         camera=camera,
@@ -171,7 +171,7 @@ def _slants(
     return [best] if enough else []
 
 
-def _on_wall(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:
+def _is_on_wall(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:
     return _category_of(cuboid, objects) in _WALL_CATEGORIES
 
 
@@ -184,7 +184,7 @@ def _category_of(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> str:
     return next((o.category for o in objects if o.id == cuboid.object_id), UNKNOWN.name)
 
 
-def _inside_masks(
+def _lie_on_objects(
     segments: Float[np.ndarray, "n 4"], objects: list[DetectedObject], shape: tuple[int, ...]
 ) -> Bool[np.ndarray, "n"]:
     """Segments whose middle or both ends lie on a standing object."""

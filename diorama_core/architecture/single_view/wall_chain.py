@@ -322,12 +322,12 @@ def best_chain(scorer: ChainScorer, walls: PhotoWalls, ceiling_m: float) -> Chai
 def refined(scorer: ChainScorer, chain: Chain, heights_m: Float[np.ndarray, "c"]) -> Chain:
     """The chain with its ceiling and its walls' places set more finely, in turns."""
     for share in (1.0, 0.4, 0.15):
-        chain = best_chain(scorer, around(scorer, chain.walls, share), best_ceiling(scorer, chain, heights_m))
+        chain = best_chain(scorer, nearby_walls(scorer, chain.walls, share), best_ceiling(scorer, chain, heights_m))
         heights_m = chain.ceiling_m * (1.0 + share * FINE)
     return chain
 
 
-def around(scorer: ChainScorer, walls: PhotoWalls, share: float) -> PhotoWalls:
+def nearby_walls(scorer: ChainScorer, walls: PhotoWalls, share: float) -> PhotoWalls:
     """Walls a little nearer and farther than the given ones."""
     eye = walls.normals @ scorer.cues.camera.position[:2]
     offsets = eye[:, None] + (walls.offsets - eye)[:, None] * (1.0 + share * FINE)

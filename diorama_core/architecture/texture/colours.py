@@ -70,11 +70,11 @@ def coloured(
     white = white_level(rgb)
     sure = free & ~_doubtful((rgb.shape[0], rgb.shape[1]), objects)[grid]
 
-    def where(index: int, role: PlaneRole) -> Bool[np.ndarray, "hs ws"]:
+    def colour_mask(index: int, role: PlaneRole) -> Bool[np.ndarray, "hs ws"]:
         is_plane, surely = (seen == index) & free, (seen == index) & sure
         return surely if role != "floor" and surely.sum() >= MIN_PIXELS else is_plane
 
-    colours = [_colour_of(plane.role, small, where(i, plane.role), white) for i, plane in enumerate(planes)]
+    colours = [_colour_of(plane.role, small, colour_mask(i, plane.role), white) for i, plane in enumerate(planes)]
     shown = [int((seen == i).sum()) for i in range(len(planes))]
     unhidden = [int(((seen == i) & free).sum()) for i in range(len(planes))]
     by_role: dict[PlaneRole, tuple[float, float, float]] = {}

@@ -128,7 +128,7 @@ def floor_colour(
     """
     lab = cv2.cvtColor(rgb[:, None].astype(np.float32) / 255.0, cv2.COLOR_RGB2LAB)[:, 0].astype(np.float64)
     main = _main_colour(lab, places, np.ones(len(lab)), np.zeros(len(lab), dtype=bool), white)
-    red, green, blue = (float(c) / 255.0 for c in np.median(rgb[_of_material(lab, main)], axis=0))
+    red, green, blue = (float(c) / 255.0 for c in np.median(rgb[_matches_material(lab, main)], axis=0))
     return red, green, blue
 
 
@@ -163,7 +163,7 @@ def floor_texels(
         white,
     )
     is_floor = np.zeros(seen.shape, dtype=bool)
-    is_floor[rows, columns] = _of_material(lab, main)
+    is_floor[rows, columns] = _matches_material(lab, main)
     picture = np.zeros((*seen.shape, 3), np.float32)
     picture[rows, columns] = lab
     is_floor, others = _with_pattern(is_floor, picture, np.stack([rows, columns]), main, pixel_m)
@@ -198,7 +198,7 @@ def _with_pattern(
         if left.mean() < SETTINGS.min_of_pattern:
             break
         fullest = _fullest(lab[left][:: max(1, int(left.sum()) // SETTINGS.samples)])
-        texels = _of_material(lab, fullest) & left
+        texels = _matches_material(lab, fullest) & left
         if texels.mean() < SETTINGS.min_of_pattern:
             break
         is_compared |= texels
@@ -342,7 +342,7 @@ def _fullest(lab: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
     return np.asarray(np.median(lab[alike(lab, cell, _CELL_LAB)], axis=0))
 
 
-def _of_material(lab: Float[np.ndarray, "n 3"], main: Float[np.ndarray, "3"]) -> Bool[np.ndarray, "n"]:
+def _matches_material(lab: Float[np.ndarray, "n 3"], main: Float[np.ndarray, "3"]) -> Bool[np.ndarray, "n"]:
     """Colours that a material of one main colour has in light and shade."""
     near = np.abs(lab - main)
     core = near[(near < _CELL_LAB).all(axis=1)]
@@ -361,11 +361,12 @@ def _intermingled(one: Bool[np.ndarray, "h w"], other: Bool[np.ndarray, "h w"], 
     beside = [cv2.dilate(part.astype(np.uint8), reach).astype(bool) for part in (one, other)]
     shares = [float(beside[1 - k][part].mean()) if part.any() else 0.0 for k, part in enumerate((one, other))]
     return (
-        min(shares) >= SETTINGS.pattern_share and float(_between(one, pixel_m)[other].mean()) >= SETTINGS.between_share
+        min(shares) >= SETTINGS.pattern_share
+        and float(_is_between(one, pixel_m)[other].mean()) >= SETTINGS.between_share
     )
 
 
-def _between(mask: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:
+def _is_between(mask: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:
     """The texels with some of a mask near on two opposite sides, along rows or along columns."""
     reach = max(1, round(SETTINGS.pattern_m / pixel_m))
     sides = []

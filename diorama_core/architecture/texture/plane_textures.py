@@ -185,7 +185,7 @@ class PhotoView:
         colours, seen = _seen_colours(self._rgb, hidden, self._camera, planes, plane, points)
         share = _photo_share(points, plane, self._camera)
         if ground:
-            contact = _of_texels(self._contact, self._camera, points) & seen
+            contact = _sample_at_texels(self._contact, self._camera, points) & seen
             floor = floor_texels(colours, seen, share, contact, pixel_m, self._white)
             seen = _without_islands(_with_grain(floor, pixel_m) & seen, FLOOR_ISLAND_M / pixel_m)
         else:
@@ -204,7 +204,7 @@ class PhotoView:
                 stray |= continued_objects(colours, is_plane, foreign, where, self._of_objects, pixel_m, longest)
             seen = _without_islands(seen & ~stray, ISLAND_M / pixel_m)
         if self._painted.any():
-            share = np.where(_of_texels(self._painted, self._camera, points), PAINTED * share, share)
+            share = np.where(_sample_at_texels(self._painted, self._camera, points), PAINTED * share, share)
         return PlaneView(colours, seen, is_plane & seen, shown, share)
 
 
@@ -299,10 +299,10 @@ def _photo_share(points: Float[np.ndarray, "h w 3"], plane: Plane, camera: Camer
     return np.asarray(np.maximum(-(rays @ plane.normal), 0.0) / distance**3)
 
 
-def _of_texels(
+def _sample_at_texels(
     photo: Bool[np.ndarray, "hp wp"], camera: Camera, points: Float[np.ndarray, "h w 3"]
 ) -> Bool[np.ndarray, "h w"]:
-    """What a map of the photo's pixels says at each texel; meaningless behind the camera."""
+    """Value of a map of the photo's pixels at each texel; meaningless behind the camera."""
     pixels = np.nan_to_num(camera.project(points))
     rows = np.clip(pixels[..., 1], 0, photo.shape[0] - 1).astype(int)
     return np.asarray(photo[rows, np.clip(pixels[..., 0], 0, photo.shape[1] - 1).astype(int)])

@@ -57,7 +57,7 @@ class CeilingPiece:
 def find_ceilings(surface: MeasuredSurface) -> tuple[CeilingPiece, ...]:
     """The flat ceiling where one is seen, then slopes, largest first."""
     slopes = _slopes(surface)
-    height = ceiling_height(surface, without=_on_any(surface, slopes))
+    height = ceiling_height(surface, without=_is_on_piece(surface, slopes))
     flat = () if height is None else (CeilingPiece(np.array([0.0, 0.0, -1.0]), -height, np.inf),)
     return (*flat, *slopes)
 
@@ -155,7 +155,7 @@ def _snapped(
     return (straight, moved) if at_axis > 0.85 * agree else (normal, offset)
 
 
-def _on_any(surface: MeasuredSurface, pieces: tuple[CeilingPiece, ...]) -> Bool[np.ndarray, "n"]:
+def _is_on_piece(surface: MeasuredSurface, pieces: tuple[CeilingPiece, ...]) -> Bool[np.ndarray, "n"]:
     on = np.zeros(len(surface.points), dtype=bool)
     for piece in pieces:
         on |= np.abs(surface.points @ piece.normal - piece.offset) < tolerance_m(surface.depth_m)

@@ -224,7 +224,7 @@ def fit_line(
         normal = turned if turned @ normal > 0 else -turned
         offset = float(centre @ normal)
     length = float(np.ptp(points[core] @ np.array([-normal[1], normal[0]])))
-    axis = _along_axis(
+    axis = _axis_aligned_line(
         points, weights, normal, noise, MAX_SNAP_RAD + float(np.arctan2(SETTINGS.narrow_slack_m, length))
     )
     if axis is None:
@@ -238,7 +238,7 @@ def fit_line(
     )
 
 
-def _along_axis(
+def _axis_aligned_line(
     points: Float[np.ndarray, "n 2"],
     weights: Float[np.ndarray, "n"],
     normal: Float[np.ndarray, "2"],

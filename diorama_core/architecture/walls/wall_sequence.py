@@ -88,7 +88,7 @@ def _merged(runs: list[Run], origin: Float[np.ndarray, "2"], settings: WallSetti
     """Neighbouring runs of what is about the same wall become one, whatever was unknown between them."""
     out: list[Run] = []
     for run in runs:
-        if out and _about_same(out[-1], run, origin, settings):
+        if out and _are_same_wall(out[-1], run, origin, settings):
             larger = max(out[-1].wall, run.wall, key=lambda w: w.area_m2)
             out[-1] = Run(larger, out[-1].first, run.last)
         else:
@@ -100,8 +100,8 @@ def _collinear(a: WallCandidate, b: WallCandidate, settings: WallSettings) -> bo
     return bool(a.normal @ b.normal > np.cos(np.deg2rad(3.0)) and abs(a.offset - b.offset) < settings.collinear_m)
 
 
-def _about_same(a: Run, b: Run, origin: Float[np.ndarray, "2"], settings: WallSettings) -> bool:
-    """Whether two are on one line, or the smaller one lies close along the larger, as noise and assumed walls do."""
+def _are_same_wall(a: Run, b: Run, origin: Float[np.ndarray, "2"], settings: WallSettings) -> bool:
+    """True for two on one line, or if the smaller one lies close along the larger, as noise and assumed walls do."""
     if _collinear(a.wall, b.wall, settings):
         return True
     minor, major = sorted((a, b), key=lambda run: run.wall.area_m2)
@@ -237,7 +237,7 @@ def _beyond_view(
     """Where the first or last wall ends: behind the camera, a little outside the picture, or where it was last seen."""
     outward = -run.wall.along if left else run.wall.along
     if outward[1] < -0.7:
-        return _at_y(run.wall, origin[1] - settings.behind_camera_m)
+        return _wall_point_at_y(run.wall, origin[1] - settings.behind_camera_m)
     seen = run.first if left else run.last
     at_side = point_at(run.wall, side, origin, settings)
     if at_side is None or np.linalg.norm(at_side - origin) > 2.5 * _range(run, origin, settings):
@@ -249,8 +249,8 @@ def _beyond_view(
     return at_side + settings.beyond_view_m * outward
 
 
-def _at_y(wall: WallCandidate, y: float) -> Float[np.ndarray, "2"]:
-    """Where a wall that runs about along y reaches a given y."""
+def _wall_point_at_y(wall: WallCandidate, y: float) -> Float[np.ndarray, "2"]:
+    """Point at a given y on a wall that runs about along y."""
     return np.array([(wall.offset - wall.normal[1] * y) / wall.normal[0], y])
 
 

@@ -92,8 +92,8 @@ class Term:
     pair: Callable[[FacingRoom, int, int], PairAgreement | None] | None = None
 
 
-def toward(room: FacingRoom, i: int, direction: Float[np.ndarray, "2"]) -> Agreement:
-    """1 for the heading in a direction, -1 for the one away from it: the cosine between them."""
+def heading_cosine(room: FacingRoom, i: int, direction: Float[np.ndarray, "2"]) -> Agreement:
+    """Cosine between each heading and a direction."""
     return np.asarray(room.objects[i].directions @ direction)
 
 
@@ -104,7 +104,7 @@ def shown(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Agreement
         kind = room.objects[i].kind
         if kind not in kinds if kinds is not None else kind in SEATS | STORAGE | SCREENS | LOUNGE | NO_FRONT:
             return None
-        cosine = toward(room, i, room.toward_camera(i))
+        cosine = heading_cosine(room, i, room.toward_camera(i))
         return 0.25 * cosine + 0.75 * np.minimum(cosine, 0.0)
 
     return one
@@ -115,7 +115,7 @@ def at_table(room: FacingRoom, i: int) -> Agreement | None:
     if room.objects[i].kind not in SEATS | LOUNGE:
         return None
     table = room.nearest(i, TABLES if room.objects[i].kind in SEATS else LOW_TABLES, _table_reach_m(room, i))
-    return None if table is None else toward(room, i, square_to(room, i, table))
+    return None if table is None else heading_cosine(room, i, square_to(room, i, table))
 
 
 def _table_reach_m(room: FacingRoom, i: int) -> float:
@@ -144,7 +144,7 @@ def at_user(room: FacingRoom, i: int) -> Agreement | None:
     if user is None:
         seats = LOUNGE | BEDS if item.kind == "television" else SEATS
         user = room.nearest(i, seats, COMPANY_M if item.kind == "television" else AT_LOW_TABLE_M)
-    return None if user is None else toward(room, i, unit(room.objects[user].centre[:2] - item.centre[:2]))
+    return None if user is None else heading_cosine(room, i, unit(room.objects[user].centre[:2] - item.centre[:2]))
 
 
 def back_at_wall(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Agreement | None]:
@@ -175,12 +175,12 @@ def _wall_behind(room: FacingRoom, i: int, direction: Float[np.ndarray, "2"]) ->
 def out_of_wall(room: FacingRoom, i: int) -> Agreement | None:
     """What hangs on a wall looks out of it."""
     direction = room.objects[i].out_of_wall
-    return None if direction is None else toward(room, i, direction)
+    return None if direction is None else heading_cosine(room, i, direction)
 
 
 def as_measured(room: FacingRoom, i: int) -> Agreement | None:
     """What was told of its front holds."""
-    return toward(room, i, room.objects[i].axes[0]) if room.objects[i].front_known else None
+    return heading_cosine(room, i, room.objects[i].axes[0]) if room.objects[i].front_known else None
 
 
 def leaning(room: FacingRoom, i: int) -> Agreement | None:
@@ -193,7 +193,7 @@ def leaning(room: FacingRoom, i: int) -> Agreement | None:
     long = int(np.argmax(carrier.size_m[:2]))
     axis = carrier.axes[long if on_bed else 1 - long]
     inward = carrier.centre[:2] - item.centre[:2] if on_bed else room.toward_camera(i)
-    return toward(room, i, axis if axis @ inward >= 0 else -axis)
+    return heading_cosine(room, i, axis if axis @ inward >= 0 else -axis)
 
 
 def at_middle(room: FacingRoom, i: int) -> Agreement | None:
@@ -202,7 +202,7 @@ def at_middle(room: FacingRoom, i: int) -> Agreement | None:
     if len(room.objects) < 3 or item.carrier is not None or item.kind in NO_FRONT | SEATS | LOUNGE:
         return None
     middle = np.mean([o.centre[:2] for o in room.objects], axis=0) - item.centre[:2]
-    return toward(room, i, unit(middle)) if np.linalg.norm(middle) > 0.3 else None
+    return heading_cosine(room, i, unit(middle)) if np.linalg.norm(middle) > 0.3 else None
 
 
 def as_carrier(room: FacingRoom, i: int, j: int) -> PairAgreement | None:

@@ -13,9 +13,9 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, UInt8
 
-from diorama_core.arrangement.surfaces import outside_m
+from diorama_core.arrangement.surfaces import overhang_m
 from diorama_core.editing.collisions import WALKED_ON_M, Collisions
-from diorama_core.editing.footprints import footprint_of, footprints, within
+from diorama_core.editing.footprints import footprint_of, footprints, lie_within
 from diorama_core.editing.placing import places_of
 from diorama_core.editing.relations import OF_ROOM, Relation, RelationKind, is_met
 from diorama_core.editing.room_frame import RoomFrame
@@ -87,7 +87,7 @@ def measure(asked: Asked, scene: Scene, library: ShapeLibrary) -> TextScene:
     standing = [o for o in scene.objects if o.category not in OPENING_CATEGORIES]
     supported = sum(_is_supported(scene, library, o) for o in standing)
     hit = {i for pair in Collisions(library).of(scene, [o.id for o in standing]) for i in pair}
-    beyond = [o for o in standing if not within(footprint_of(o)[None], frame.outline, OUTSIDE_M)[0]]
+    beyond = [o for o in standing if not lie_within(footprint_of(o)[None], frame.outline, OUTSIDE_M)[0]]
     failures += [f"{o.label} collides" for o in standing if o.id in hit]
     failures += [f"{o.label} is outside" for o in beyond]
     free = _free_floor(scene, frame)
@@ -192,7 +192,7 @@ def _is_supported(scene: Scene, library: ShapeLibrary, item: SceneObject) -> boo
         reach = corners @ surface.normal - surface.level
         touches = abs(float(reach.min())) < CONTACT_M
         foot = item.pose.position - (float(surface.normal @ item.pose.position) - surface.level) * surface.normal
-        if touches and outside_m(surface, foot) <= 0.02:
+        if touches and overhang_m(surface, foot) <= 0.02:
             return True
     return False
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diorama_core.arrangement.surfaces import RestingSurface, object_surfaces, outside_m, plane_surface
+from diorama_core.arrangement.surfaces import RestingSurface, object_surfaces, overhang_m, plane_surface
 from diorama_core.layout.feasible.relocate import relocate
 from diorama_core.layout.feasible.separate import base, build_program, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
@@ -97,12 +97,12 @@ class DragSolver:
         j = int(problem.parent[i])
         world = supported if j < 0 else supported.at(problem.R[j], problem.p[j], problem.scale[j])
         foot = problem.p[i] - 0.5 * problem.R[i][:, 2] * problem.shape_size[i][2] * problem.scale[i][2]
-        if j >= 0 and outside_m(world, foot) <= self.leaves_m:
+        if j >= 0 and overhang_m(world, foot) <= self.leaves_m:
             return problem, None
         under = [
             (surface, edge)
             for surface, edge in self.places
-            if outside_m(surface, foot) <= 0.0 and surface.level <= float(foot[2]) + 0.15
+            if overhang_m(surface, foot) <= 0.0 and surface.level <= float(foot[2]) + 0.15
         ]
         if not under:
             return problem, None

@@ -14,10 +14,10 @@ from diorama_core.architecture.single_view.wall_chain import (
     Chain,
     ChainScorer,
     PhotoWalls,
-    around,
     best_ceiling,
     best_chain,
     leaves,
+    nearby_walls,
     refined,
 )
 from tests.architecture.single_view.plain_cues import cues, drawn_edges
@@ -189,10 +189,10 @@ def test_best_ceiling_is_the_rooms_and_above_the_eye() -> None:
 
 def test_walls_around_others_are_nearer_and_farther_by_a_share() -> None:
     scorer = seen()
-    near = around(scorer, walls(LEFT, FAR), 1.0)
+    near = nearby_walls(scorer, walls(LEFT, FAR), 1.0)
     assert len(near) == 2 * len(FINE)
     np.testing.assert_allclose(np.sort(near.offsets[near.directions == 1]), np.sort(-4.0 * (1.0 + FINE)))
-    same = around(scorer, walls(FAR), 0.0)
+    same = nearby_walls(scorer, walls(FAR), 0.0)
     assert same.offsets.tolist() == [-4.0]
 
 
