@@ -24,6 +24,7 @@ if typechecking.wanted():  # before anything of Diorama is imported
 
 from diorama_core.architecture.texture import plane_textures
 from diorama_core.artefacts import Inputs
+from diorama_core.io.large_libraries import GARBAGE_EVERY
 from diorama_core.io.text import clean_text
 from diorama_core.library import catalogue
 from diorama_core.perception.inputs import ReadInputs, read_inputs
@@ -154,8 +155,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """What is imported and collected is looked through for garbage neither now nor while tests run."""
+    """What is imported and collected is looked through for garbage neither now nor while tests run; the rest as seldom
+    as in the program.
+    """
     gc.freeze()
+    gc.set_threshold(GARBAGE_EVERY)
     gc.enable()
 
 

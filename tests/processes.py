@@ -1,10 +1,34 @@
-"""Whether processes that tests started are still there."""
+"""Processes that tests start: whether they are still there, and quick ones for builds."""
 
 from __future__ import annotations
 
+import multiprocessing
+import sys
 from pathlib import Path
 
 import pytest
+
+from diorama_core import workers
+
+BUILDING = [
+    "diorama_app.projects.folder_build",
+    "diorama_app.projects.report",
+    "diorama_core.project.build",
+    "tests.small_planes",
+]
+"""Modules whose import is most of what a process that builds a small photo does."""
+
+
+@pytest.fixture
+def quick_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Worker processes fork from one that has imported what a build needs and runs no thread. `tests/test_workers.py`
+    starts them as the program does.
+    """
+    if sys.platform != "linux":
+        return
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(BUILDING)
+    monkeypatch.setattr(workers, "get_context", lambda method: context)
 
 
 def runs(process: int) -> bool:

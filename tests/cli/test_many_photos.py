@@ -11,8 +11,12 @@ from diorama_app.cli.build import add_build
 from diorama_app.cli.many_photos import REPORT
 from tests.cli.room_photo import write_room
 from tests.few_shapes import stored_seats
+from tests.processes import quick_workers
+
+__all__ = ["quick_workers"]
 
 
+@pytest.mark.usefixtures("quick_workers")
 def test_a_folder_becomes_projects_and_a_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     photos, output = tmp_path / "photos", tmp_path / "out"
     photos.mkdir()

@@ -13,7 +13,7 @@ from tests.cli.room_photo import write_room
 from tests.few_shapes import stored_seats
 
 PROGRAM = """
-import sys
+import sys, tests.small_planes
 from diorama_app.cli import main
 then = sys.argv.index("then")
 assert main(sys.argv[1:then]) == 0

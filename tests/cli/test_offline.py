@@ -46,6 +46,7 @@ with urllib.request.urlopen(running.url) as page:
 running.stop()
 """
 BUILD_AND_EXPORT = """
+import tests.small_planes
 from diorama_app.cli import main
 photo, boxes, library, built, model = sys.argv[2:]
 assert main(["build", photo, "-o", built, "--boxes", boxes, "--library", library]) == 0

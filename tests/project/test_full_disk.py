@@ -30,6 +30,7 @@ subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8k", "tmpfs", str(disk)], ch
 """
 BUILD = """
 import diorama_core as diorama
+import tests.small_planes
 picture = plain_photo(160, 120).rgb
 boxes = [{"bbox": [60, 50, 110, 105], "class": "table"}]
 refused = 0

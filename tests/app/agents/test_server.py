@@ -27,7 +27,7 @@ from tests.waiting import until
 pytestmark = pytest.mark.posix
 
 ROOT = Path(__file__).resolve().parents[3]
-COMMAND = ["-m", "diorama_app.cli", "mcp"]
+COMMAND = ["-m", "tests.small_planes", "mcp"]
 
 
 @pytest.fixture(scope="module")

@@ -39,7 +39,7 @@ ROOT = Path(__file__).resolve().parents[3]
 @contextmanager
 def running(projects: Path, *more: str) -> Iterator[tuple[str, subprocess.Popen]]:
     """A server and its address."""
-    command = [sys.executable, "-m", "diorama_app.cli", "api", "--port", "0", "--projects", str(projects), *more]
+    command = [sys.executable, "-m", "tests.small_planes", "api", "--port", "0", "--projects", str(projects), *more]
     command += ["--library", stored_seats()]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT)
     assert process.stdout is not None

@@ -19,13 +19,15 @@ from diorama_core.project.lock import OWNER
 from diorama_core.workers import LocalWorkers
 from tests.cli.room_photo import BOXES, write_room
 from tests.few_shapes import SEATS, stored_seats
+from tests.processes import quick_workers
 from tests.waiting import until
 
+__all__ = ["quick_workers"]
 OPTIONS = BuildOptions(profile="embedded", library=SEATS)
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
+def folder(tmp_path: Path, quick_workers: None) -> Path:
     """Two photos with boxes, and the library of the builds."""
     stored_seats()
     photo, boxes = write_room(tmp_path, marked=1)
