@@ -38,7 +38,7 @@ from diorama_core.evaluation.benchmarks.cases import SEEDS, attempted, recipe
 from diorama_core.evaluation.benchmarks.photo_build import annotated_inputs
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.evaluation.benchmarks.system import WAYS
-from diorama_core.evaluation.metrics.scene import in_true_world, matched
+from diorama_core.evaluation.metrics.scene import align_to_truth, matched
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.plan import assemble, evaluate
@@ -148,7 +148,7 @@ def _faces(scene: Scene, normal: Float[np.ndarray, "3"], front_deg: float | None
 
 def _true(view: TruthView, scene: Scene) -> tuple[Scene, dict[str, str]]:
     """The scene in the true world, and the built object of each true one."""
-    there = in_true_world(scene, view)
+    there = align_to_truth(scene, view)
     truth = [view.scene.objects[k] for k in view.asked]
     return there, {t.id: m.id for t, m in zip(truth, matched(truth, there), strict=True) if m is not None}
 

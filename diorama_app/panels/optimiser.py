@@ -15,7 +15,7 @@ from diorama_app.session.layout_run import LayoutRun
 from diorama_app.strings import N_, _, plural
 from diorama_app.web.html import Action, LiveHtml, button, library_text, text
 from diorama_core.layout.settings import RecipeName, Weights, weighted_costs
-from diorama_core.layout.what_got_worse import in_words, resized_in_words
+from diorama_core.layout.what_got_worse import describe_worse, resized_in_words
 from diorama_core.scene.types import Scene
 
 RECIPES: dict[str, RecipeName] = {
@@ -255,7 +255,7 @@ def _choice(run: LayoutRun) -> str:
 
 def _worse(run: LayoutRun, labels: Mapping[str, str]) -> str:
     """What the recipe made worse, and what can be done about it."""
-    lines = () if run.report is None else in_words(run.report, run.worse, labels)
+    lines = () if run.report is None else describe_worse(run.report, run.worse, labels)
     if not lines:
         return ""
     back = button(_("Put back what got worse"), "back worse", title=_("One undo step")) if run.worse else ""

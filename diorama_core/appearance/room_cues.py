@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.appearance.light import Shade
 from diorama_core.artefacts import DetectedObject
-from diorama_core.geometry.planes import in_plane_polygon
+from diorama_core.geometry.planes import is_in_plane_polygon
 from diorama_core.io.srgb import luminance, srgb_to_linear
 from diorama_core.scene.types import Architecture, Camera, Plane, Scene
 
@@ -125,7 +125,7 @@ def _plane_seen(room: Architecture, camera: Camera, pixels: Float[np.ndarray, "h
             away = (plane.offset - float(camera.position @ plane.normal)) / slant
         ahead = np.isfinite(away) & (away > 0) & (away < nearest)
         points = camera.position + np.where(ahead, away, 0.0)[..., None] * rays
-        met = ahead & in_plane_polygon(points, plane)
+        met = ahead & is_in_plane_polygon(points, plane)
         nearest, which = np.where(met, away, nearest), np.where(met, index, which)
     return which
 

@@ -16,7 +16,7 @@ from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import DOOR
-from diorama_core.geometry.planes import clip_polygon, in_polygon, signed_area
+from diorama_core.geometry.planes import clip_polygon, is_in_polygon, signed_area
 from diorama_core.library import taxonomy
 from diorama_core.scene.room_edits import ceiling_height, move_plane, set_ceiling_height
 from diorama_core.scene.types import Architecture, Plane, Scene, SceneObject, Support
@@ -133,7 +133,7 @@ def _with_ceiling(scene: Scene) -> Scene:
         return scene
     outline = floor.polygon[:, :2]
     corners = np.vstack([o.corners_world[:, :2] for o in hanging])
-    if not in_polygon(corners, outline).all():
+    if not is_in_polygon(corners, outline).all():
         points = manifold3d.CrossSection.hull_points(np.vstack([outline, corners]))
         outline = points.to_polygons()[0]
     polygon = np.column_stack([outline[::-1], np.full(len(outline), level)])

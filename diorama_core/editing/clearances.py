@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.casting import cast_plane
-from diorama_core.geometry.planes import in_plane_polygon
+from diorama_core.geometry.planes import is_in_plane_polygon
 from diorama_core.scene import edits
 from diorama_core.scene.support import ancestors, descendants
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject
@@ -130,7 +130,7 @@ def _to_wall(
     """How far a wall is from every start, at the middle of the heights that it shares with the object."""
     level = np.column_stack([starts[:, :2], np.full(len(starts), np.mean(span))])
     t = (wall.offset - level @ wall.normal) / float(out @ wall.normal)
-    hit = in_plane_polygon(level + t[:, None] * out, wall) & (t > 0)
+    hit = is_in_plane_polygon(level + t[:, None] * out, wall) & (t > 0)
     return np.asarray(np.where(hit, t, np.inf))
 
 
@@ -190,6 +190,6 @@ def clear_of_walls(scene: Scene, item: SceneObject) -> Pose:
         heights = wall.polygon[:, 2]
         foot = pose.position - gap * wall.normal
         foot[2] = np.clip(foot[2], float(heights.min()) + UPRIGHT, float(heights.max()) - UPRIGHT)
-        if -reach < gap < reach and in_plane_polygon(foot[None], wall)[0]:
+        if -reach < gap < reach and is_in_plane_polygon(foot[None], wall)[0]:
             pose = pose.moved((reach - gap) * wall.normal)
     return pose

@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.scene.types import SceneObject
 
 Points: TypeAlias = Float[np.ndarray, "n 2"]
@@ -64,7 +64,7 @@ def lie_within(quads: Quads, outline: Outline, slack_m: float = 0.002) -> Bool[n
     drawn_in = quads + (centre - quads) * slack_m / np.maximum(
         np.linalg.norm(centre - quads, axis=-1, keepdims=True), slack_m
     )
-    inside: Bool[np.ndarray, "n"] = np.array(np.asarray(in_polygon(drawn_in, outline)).all(axis=1))
+    inside: Bool[np.ndarray, "n"] = np.array(np.asarray(is_in_polygon(drawn_in, outline)).all(axis=1))
     for corner in outline:  # a corner of the room that points into the outline
         inside &= ~_holds(drawn_in, corner)
     return inside

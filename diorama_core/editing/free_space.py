@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float
 
-from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import resolve
 from diorama_core.scene.types import Scene
@@ -124,4 +124,4 @@ def free_space(scene: Scene) -> FreeSpace:
 def _filled(corners: Float[np.ndarray, "n 2"], height: int, width: int) -> Bool[np.ndarray, "{height} {width}"]:
     """Cells whose middles are in a polygon, given in cells."""
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
-    return in_polygon(np.stack([x, y], axis=-1), np.asarray(corners, dtype=np.float64))
+    return is_in_polygon(np.stack([x, y], axis=-1), np.asarray(corners, dtype=np.float64))

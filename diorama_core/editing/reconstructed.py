@@ -10,7 +10,7 @@ import numpy as np
 from diorama_core.editing.footprints import footprint_of
 from diorama_core.editing.placing import seated
 from diorama_core.editing.positioning import Positioner
-from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.scene import edits
@@ -87,7 +87,7 @@ def moved_onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibr
         return None
     depth = rise / float(ray[2])
     place = camera.position + depth * ray
-    if not in_polygon(place[None, :2], footprint_of(carrier))[0]:
+    if not is_in_polygon(place[None, :2], footprint_of(carrier))[0]:
         return None
     share = depth / float(camera.to_camera(item.pose.position[None])[0, 2])
     position = place + np.array([0.0, 0.0, share * item.size_m[2] / 2])

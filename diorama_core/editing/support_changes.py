@@ -12,7 +12,7 @@ import numpy as np
 from diorama_core.editing.footprints import footprint_of
 from diorama_core.editing.placing import seated
 from diorama_core.editing.positioning import Positioner
-from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.geometry.rooms import rooms_of_objects
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
@@ -82,7 +82,7 @@ def attach_to_room_floor(scene: Scene, object_id: str) -> Scene:
 
 
 def _lies_on(item: SceneObject, other: SceneObject) -> bool:
-    middle = in_polygon(item.pose.position[None, :2], footprint_of(other))[0]
+    middle = is_in_polygon(item.pose.position[None, :2], footprint_of(other))[0]
     return bool(middle) and abs(float(item.corners_world[:, 2].min()) - _top(other)) < TOUCH_M
 
 

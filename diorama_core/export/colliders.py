@@ -101,7 +101,7 @@ def _resting(body: RigidBody, carrier: RigidBody | None) -> RigidBody:
     lain = [seated(part, lowest, world_parts(carrier)) for part in world_parts(body)]
     pieces, held = ([p for some in each for p in some] for each in zip(*lain, strict=True))
     rests = replace(body, parts=(*body.parts, *(_placed(T, p) for p in pieces)))
-    return over(rests, np.concatenate(held)[:, :2]) if held else balanced(body, carrier)
+    return shift_centre_over(rests, np.concatenate(held)[:, :2]) if held else balanced(body, carrier)
 
 
 def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
@@ -110,7 +110,7 @@ def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
     if carrier is not None:
         tops = [p[np.abs(p[:, 2] - low) < NEAR_TOP_M][:, :2] for p in world_parts(carrier)]
         outline = _shared_outline(outline, np.concatenate([np.zeros((0, 2)), *tops]))
-    return over(body, outline)
+    return shift_centre_over(body, outline)
 
 
 def _foot(body: RigidBody) -> tuple[Float[np.ndarray, "n 2"], float]:
@@ -120,7 +120,7 @@ def _foot(body: RigidBody) -> tuple[Float[np.ndarray, "n 2"], float]:
     return np.concatenate([np.zeros((0, 2)), *(p[p[:, 2] < low + FOOT_M][:, :2] for p in parts)]), low
 
 
-def over(body: RigidBody, outline: Float[np.ndarray, "n 2"]) -> RigidBody:
+def shift_centre_over(body: RigidBody, outline: Float[np.ndarray, "n 2"]) -> RigidBody:
     """The body with its centre of mass above the outline that holds it up.
 
     What stands in a photo is in balance; where guessed masses say otherwise, as for lamps with weighted feet, they are
@@ -133,7 +133,7 @@ def over(body: RigidBody, outline: Float[np.ndarray, "n 2"]) -> RigidBody:
     ]
     T = body.node.T_world
     centre = T[:3, :3] @ sum((m * c for m, c in weighed), np.zeros(3)) / total + T[:3, 3]
-    shift = np.append(_into(outline, centre[:2]), 0.0)
+    shift = np.append(_shift_into_hull(outline, centre[:2]), 0.0)
     moved = body.inertia.centre + T[:3, :3].T @ shift * (total / body.mass_kg)
     return body if not body.free or not shift.any() else replace(body, inertia=replace(body.inertia, centre=moved))
 
@@ -188,8 +188,8 @@ def _shared_outline(foot: Float[np.ndarray, "n 2"], top: Float[np.ndarray, "k 2"
     return foot if both.area() < MIN_HOLD_M2 else np.concatenate(both.to_polygons())
 
 
-def _into(outline: Float[np.ndarray, "n 2"], point: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
-    """How far a point must move to lie inside a shrunken outline's hull; zero where there is no outline."""
+def _shift_into_hull(outline: Float[np.ndarray, "n 2"], point: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
+    """Shift that brings a point inside a shrunken outline's hull; zero where there is no outline."""
     try:
         hull = ConvexHull(outline)
     except (QhullError, ValueError):

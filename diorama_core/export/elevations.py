@@ -53,7 +53,7 @@ def _elevation(scene: ExportScene, wall: DrawnWall, name: str, items: Iterable[E
     origin = np.array([wall.start @ wall.along, wall.bottom_m])
     face = wall.plane.polygon @ axes.T - origin
     low, high = face.min(axis=0), face.max(axis=0)
-    against = sorted(_against(scene, wall, items), key=lambda o: _before(wall, o))
+    against = sorted(_against(scene, wall, items), key=lambda o: _back_distance_m(wall, o))
     fills = tuple(_opening(wall, o) for o in wall.openings)
     pieces = tuple(_piece(scene, o, axes, origin) for o in against)
     openings = [_extent(p) for p in fills]
@@ -86,13 +86,13 @@ def _against(scene: ExportScene, wall: DrawnWall, items: Iterable[ExportObject])
     for item in items:
         along = (item.item.corners_world[:, :2] - wall.start) @ wall.along
         over = min(float(along.max()), wall.length_m) - max(float(along.min()), 0.0)
-        if -AGAINST_M < _before(wall, item) < AGAINST_M and over > APART_M:
+        if -AGAINST_M < _back_distance_m(wall, item) < AGAINST_M and over > APART_M:
             at_wall |= {item.id, *descendants(scene.scene, item.id)}
     return [o for o in scene.objects if o.id in at_wall and o.item.category not in OPENING_CATEGORIES]
 
 
-def _before(wall: DrawnWall, item: ExportObject) -> float:
-    """How far the back of an object is before a wall."""
+def _back_distance_m(wall: DrawnWall, item: ExportObject) -> float:
+    """Distance of an object's back before a wall."""
     return float((item.item.corners_world @ wall.plane.normal).min()) - wall.plane.offset
 
 

@@ -17,7 +17,7 @@ from jaxtyping import Float
 
 from diorama_core.export.door_swings import door_swings, opening_out
 from diorama_core.export.lights import EvenLight, ExportLight, MainLight, even_light_of, lights_of, main_light_of
-from diorama_core.export.limbs import ExportLimb, OneShape, by_joint, limb_of
+from diorama_core.export.limbs import ExportLimb, OneShape, group_by_joint, limb_of
 from diorama_core.export.names import Labels
 from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pictures
 from diorama_core.export.pictures import Picture, photo_text
@@ -327,7 +327,7 @@ def _shape_meshes(
     shown = as_it_stands if pieces is None else OneShape(pieces)
     paint = (item.colour, item.finish, item.shown_photo_materials)
     surfaces = shape_surfaces(shown, item.shape_id, *paint, textures, scale)
-    grouped = {None: surfaces} if pieces is None else by_joint(surfaces)
+    grouped = {None: surfaces} if pieces is None else group_by_joint(surfaces)
     made = {}
     for number, surfaces in grouped.items():
         name = item.shape_id if number is None or pieces is None else f"{item.shape_id} {pieces.joints[number].name}"

@@ -57,8 +57,8 @@ class ExportLimb:
         return out
 
 
-def by_joint(surfaces: Iterable[Surface]) -> dict[int | None, tuple[Surface, ...]]:
-    """The surfaces of a jointed shape (`OneShape`) apart: what stays (None) and what each joint moves."""
+def group_by_joint(surfaces: Iterable[Surface]) -> dict[int | None, tuple[Surface, ...]]:
+    """Group the surfaces of a jointed shape (`OneShape`): what stays (None) and what each joint moves."""
     grouped: dict[int | None, tuple[Surface, ...]] = {}
     for surface in surfaces:
         number = joint_of(surface.name)

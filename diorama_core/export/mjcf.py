@@ -67,7 +67,7 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     root = Element("mujoco", model=gathered.name)
     SubElement(root, "compiler", angle="radian", autolimits="true")
     SubElement(root, "option", timestep="0.002", integrator="implicitfast", cone="elliptic", impratio="10")
-    even, from_viewer = _around(gathered)
+    even, from_viewer = _ambient_irradiance(gathered)
     headlight = {
         "ambient": numbers(np.full(3, _shown(0.0, even))),
         "diffuse": numbers(np.full(3, _shown(even, from_viewer))),
@@ -270,7 +270,7 @@ def _meshes(gathered: ExportScene, folder: str, progress: Progress) -> Iterator[
             yield f"{folder}/meshes/{mesh.key}_{number}.obj", obj_file(surface)
 
 
-def _around(gathered: ExportScene) -> tuple[float, float]:
+def _ambient_irradiance(gathered: ExportScene) -> tuple[float, float]:
     """Irradiance from all sides, and from the viewer: where no main light is known, that one shapes what is seen."""
     even = even_irradiance(gathered.scene, gathered.lights) if gathered.planes else MEAN_IRRADIANCE
     # Parallel light E has the mean E / 4 over all directions.

@@ -187,7 +187,7 @@ class Cuts:
             return
         left = self._left(part)
         for hole in self._left(other):
-            left = [rest for piece in left for rest in outside(piece, hole)]
+            left = [rest for piece in left for rest in subtract_convex(piece, hole)]
         self._pieces[part] = left
 
     def filled(self) -> list[str]:
@@ -201,8 +201,8 @@ class Cuts:
         return sum(hull_volume(p) for row in rows for p in self._left(row)) / whole if whole else 1.0
 
 
-def outside(part: Points, hole: Points) -> list[Points]:
-    """What a convex body has outside another, as convex pieces without slivers.
+def subtract_convex(part: Points, hole: Points) -> list[Points]:
+    """Subtract a convex body from another; gives the rest as convex pieces without slivers.
 
     Args:
         part: corners of the body, metres.
@@ -236,9 +236,9 @@ def seated(part: Points, lowest: float, below: Iterable[Points]) -> tuple[list[P
     edges = np.linspace(part[:, :2].min(axis=0), part[:, :2].max(axis=0), SOFT_CELLS + 1)
     for column, row in itertools.product(range(SOFT_CELLS), repeat=2):
         bounds = np.array([edges[column, 0], edges[row, 1]]), np.array([edges[column + 1, 0], edges[row + 1, 1]])
-        cell = _within(part, *bounds)
+        cell = _clip_to_column(part, *bounds)
         foot = np.zeros((0, 3)) if cell is None else cell[cell[:, 2] < level + SKIN_M]
-        carriers = [p for q in below if (p := _within(q, *bounds)) is not None and p[:, 2].max() < level]
+        carriers = [p for q in below if (p := _clip_to_column(q, *bounds)) is not None and p[:, 2].max() < level]
         bottom = max((float(p[:, 2].max()) + SKIN_M for p in carriers), default=-np.inf)
         if len(foot) < 3 or bottom < lowest:
             continue
@@ -248,7 +248,7 @@ def seated(part: Points, lowest: float, below: Iterable[Points]) -> tuple[list[P
     return pieces, held
 
 
-def _within(points: Points, lower: Float[np.ndarray, "2"], upper: Float[np.ndarray, "2"]) -> Points | None:
+def _clip_to_column(points: Points, lower: Float[np.ndarray, "2"], upper: Float[np.ndarray, "2"]) -> Points | None:
     """A convex body inside an upright column."""
     rest: Points | None = points
     for axis in (0, 1):

@@ -126,7 +126,7 @@ def inertia_of(surfaces: tuple[Surface, ...], scale: Float[np.ndarray, "3"]) -> 
         total += mass
         first += masses @ measured.centroids * scale
         second += (measured.centroids * masses[:, None]).T @ measured.centroids * np.outer(scale, scale)
-    return _of_moments(total, first, second)
+    return _inertia_from_moments(total, first, second)
 
 
 def _mass_kg(kind: Substance, volume_m3: float, area_m2: float) -> float:
@@ -136,8 +136,8 @@ def _mass_kg(kind: Substance, volume_m3: float, area_m2: float) -> float:
     return kind.density * area_m2 * float(np.clip(kind.wall_m, MIN_SHEET_M, MAX_SHEET_M))
 
 
-def _of_moments(total: float, first: Float[np.ndarray, "3"], second: Float[np.ndarray, "3 3"]) -> Inertia:
-    """From a mass and its first and second moments about the origin."""
+def _inertia_from_moments(total: float, first: Float[np.ndarray, "3"], second: Float[np.ndarray, "3 3"]) -> Inertia:
+    """Inertia from a mass and its first and second moments about the origin."""
     if total < 1e-9:
         return Inertia(MIN_MASS_KG, np.zeros(3), np.eye(3) * MIN_MASS_KG * MIN_RADIUS_M**2)
     centre = first / total

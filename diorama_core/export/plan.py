@@ -178,7 +178,7 @@ def room_lines(planes: Sequence[Plane], items: Sequence[SceneObject], scene: Sce
         scene: Says what hangs on what.
     """
     walls = wall_lines(planes, items, scene)
-    floors = _within_walls([p.polygon[:, :2] for p in planes if p.role == "floor"], walls)
+    floors = _floors_within_walls([p.polygon[:, :2] for p in planes if p.role == "floor"], walls)
     openings = [(w, o) for w in walls for o in w.openings]
     swings = door_swings(items, articulation)
     return RoomLines(
@@ -253,7 +253,7 @@ def drawing_order(item: SceneObject) -> tuple[int, float]:
     return round(float(heights.min()) / LEVEL_M), float(heights.max())
 
 
-def _within_walls(floors: Sequence[Outline], walls: Sequence[DrawnWall]) -> tuple[Outline, ...]:
+def _floors_within_walls(floors: Sequence[Outline], walls: Sequence[DrawnWall]) -> tuple[Outline, ...]:
     """Floors without the pieces that lie behind a wall and before none: what was measured through a door, a wedge."""
     barrier = manifold3d.CrossSection()
     for wall in walls:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float, Int
 
-from diorama_core.geometry.planes import in_plane_polygon
+from diorama_core.geometry.planes import is_in_plane_polygon
 from diorama_core.scene.types import Camera, Plane
 
 CONVEX_SLACK_M = 1e-6
@@ -53,7 +53,7 @@ def cast_plane(
         for normal, offset in zip(inward, offsets, strict=True):
             inside &= origin @ normal + reach * (directions @ normal) >= offset - slack_m
     else:
-        inside = in_plane_polygon(origin + reach[..., None] * directions, plane)
+        inside = is_in_plane_polygon(origin + reach[..., None] * directions, plane)
     return np.where(inside, t, np.inf)
 
 

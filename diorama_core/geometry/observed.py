@@ -106,7 +106,7 @@ class Observed:
         column, row, depth = self._to_cells @ corners
         if depth.min() <= NEAR_M:
             return slice(0, cells), slice(0, cells)
-        return _within(row / depth, cells), _within(column / depth, cells)
+        return _cell_range(row / depth, cells), _cell_range(column / depth, cells)
 
     def agreement(self, silhouettes: Bool[np.ndarray, "p n"]) -> Float[np.ndarray, "p"]:
         """Intersection over union with the mask where there is evidence, 0 to 1.
@@ -119,7 +119,7 @@ class Observed:
         return soft_iou(self.covered, silhouettes.astype(np.float64), weight)
 
 
-def _within(places: Float[np.ndarray, "n"], cells: int) -> slice:
+def _cell_range(places: Float[np.ndarray, "n"], cells: int) -> slice:
     """Cells between the least and the greatest place, and one more on either side for what rounding hides."""
     first, last = np.clip([np.floor(places.min()) - 1, np.ceil(places.max()) + 2], 0, cells).astype(int)
     return slice(int(first), int(max(first, last)))

@@ -61,7 +61,7 @@ def wall_of(item: SceneObject, walls: Iterable[Plane], scene: Scene) -> Plane | 
     for wall in candidates:
         if wall.id in named:
             return wall
-    near = [(abs(float(w.normal @ item.pose.position) - w.offset), w) for w in candidates if _beside(item, w)]
+    near = [(abs(float(w.normal @ item.pose.position) - w.offset), w) for w in candidates if _is_along_wall(item, w)]
     distance, nearest = min(near, key=lambda pair: pair[0], default=(np.inf, None))
     return nearest if distance <= REACH_M else None
 
@@ -140,7 +140,7 @@ def _spans(wall: Plane, point: Float[np.ndarray, "3"]) -> bool:
     return all(float((wall.polygon @ a).min()) <= float(point @ a) <= float((wall.polygon @ a).max()) for a in (u, v))
 
 
-def _beside(item: SceneObject, wall: Plane) -> bool:
+def _is_along_wall(item: SceneObject, wall: Plane) -> bool:
     u, _ = plane_axes(wall.normal)
     along, ends = float(item.pose.position @ u), wall.polygon @ u
     turned = abs(float(item.pose.R_world_object[:, 0] @ wall.normal)) > 0.8
@@ -163,13 +163,13 @@ def _with_slits(outer: Contour, holes: Sequence[Contour]) -> Contour:
     for hole in sorted(holes, key=lambda h: float(h[:, 1].min())):
         first = int(np.lexsort((hole[:, 0], hole[:, 1]))[0])
         start = hole[first]
-        edge, point = _below(ring, start)
+        edge, point = _edge_below(ring, start)
         around = np.concatenate([hole[first:], hole[: first + 1]])
         ring = np.concatenate([ring[: edge + 1], point[None], around, point[None], ring[edge + 1 :]])
     return ring
 
 
-def _below(ring: Contour, start: Float[np.ndarray, "2"]) -> tuple[int, Float[np.ndarray, "2"]]:
+def _edge_below(ring: Contour, start: Float[np.ndarray, "2"]) -> tuple[int, Float[np.ndarray, "2"]]:
     """The edge of a ring straight below a point, nearest to it, and where it is met."""
     hits: list[tuple[float, int]] = []
     for number, (a, b) in enumerate(zip(ring, np.roll(ring, -1, axis=0), strict=True)):

@@ -137,8 +137,8 @@ def grid_normals(points_camera: Float[np.ndarray, "h w 3"], step: int = 2) -> Fl
     return normals
 
 
-def in_polygon(points: Float[np.ndarray, "*n 2"], outline: Float[np.ndarray, "k 2"]) -> Bool[np.ndarray, "*n"]:
-    """Whether points lie within a polygon, convex or not, by the even-odd rule; never within an empty one."""
+def is_in_polygon(points: Float[np.ndarray, "*n 2"], outline: Float[np.ndarray, "k 2"]) -> Bool[np.ndarray, "*n"]:
+    """True for points within a polygon, convex or not, by the even-odd rule; never within an empty one."""
     x, y = np.moveaxis(points, -1, 0)
     inside = np.zeros(x.shape, dtype=bool)
     for (ax, ay), (bx, by) in zip(outline.tolist(), np.roll(outline, -1, axis=0).tolist(), strict=True):
@@ -153,7 +153,7 @@ def signed_area(polygon: Float[np.ndarray, "k 2"]) -> float:
     return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
-def in_plane_polygon(points: Float[np.ndarray, "*n 3"], plane: Plane) -> Bool[np.ndarray, "*n"]:
-    """Whether points of a plane lie in its polygon, whatever its shape."""
+def is_in_plane_polygon(points: Float[np.ndarray, "*n 3"], plane: Plane) -> Bool[np.ndarray, "*n"]:
+    """True for points of a plane in its polygon, convex or not."""
     axes = np.stack(plane_axes(plane.normal), axis=1)
-    return in_polygon(points @ axes, plane.polygon @ axes)
+    return is_in_polygon(points @ axes, plane.polygon @ axes)

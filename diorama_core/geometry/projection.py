@@ -42,7 +42,7 @@ def visible_bounds(
         The bounds, and whether anything is visible. Where nothing is, the bounds are the point of the picture nearest
         to the cuboid's centre.
     """
-    points = _by_coordinate(corners_camera)
+    points = _stack_by_coordinate(corners_camera)
     slack = frustum_slack(points, intrinsics)
     inside = (slack >= 0).all(axis=(0, 1))
     u, v = _project(points, intrinsics)
@@ -62,8 +62,8 @@ def box_iou(a: Real[np.ndarray, "*#n 4"], b: Real[np.ndarray, "*#n 4"]) -> Float
     return np.asarray(overlap / np.maximum(union, 1e-12))
 
 
-def _by_coordinate(points: Float[np.ndarray, "n p 3"]) -> Float[np.ndarray, "3 p n"]:
-    """Coordinate by coordinate, the cuboids side by side in memory: numpy is several times as fast along many."""
+def _stack_by_coordinate(points: Float[np.ndarray, "n p 3"]) -> Float[np.ndarray, "3 p n"]:
+    """Stack points by coordinate, the cuboids side by side in memory: numpy is several times as fast along many."""
     return np.ascontiguousarray(points.transpose(2, 1, 0))
 
 
@@ -107,7 +107,7 @@ def _clipped_bounds(
     corners: Float[np.ndarray, "n 8 3"], slack: Float[np.ndarray, "5 8 n"], k: Intrinsics
 ) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n"]]:
     """Bounds of the clipped edges, of the near plane's cut, and of the picture's corners that the cuboid covers."""
-    points = _by_coordinate(corners)
+    points = _stack_by_coordinate(corners)
     a, b = edges_of_cuboid().T
     low, high = _segment_bounds(points[:, a], points[:, b], slack[:, a], slack[:, b], k)
     outside = slack < 0

@@ -66,7 +66,7 @@ def rooms_of_objects(scene: Scene) -> Mapping[str, str]:
     hanging = {s.child for s in scene.supports if s.parent in ceilings}
     feet = np.array([[*o.pose.position[:2], o.corners_world[:, 2].min()] for o in scene.objects])
     feet[[o.id in hanging for o in scene.objects], 2] -= HOME.under_ceiling_m
-    return _over_floors(scene, [o.id for o in scene.objects], feet)
+    return _rooms_of_feet(scene, [o.id for o in scene.objects], feet)
 
 
 def rooms_of_planes(scene: Scene) -> Mapping[str, str]:
@@ -74,8 +74,8 @@ def rooms_of_planes(scene: Scene) -> Mapping[str, str]:
     if not scene.rooms:
         return {}
     planes = [p for p in scene.architecture.planes if p.role != "floor"]
-    feet = np.array([_before(p) for p in planes]).reshape(-1, 3)
-    return {r.floor: r.id for r in scene.rooms} | _over_floors(scene, [p.id for p in planes], feet)
+    feet = np.array([_point_before_plane(p) for p in planes]).reshape(-1, 3)
+    return {r.floor: r.id for r in scene.rooms} | _rooms_of_feet(scene, [p.id for p in planes], feet)
 
 
 def part_of_home(scene: Scene, room_ids: Collection[str]) -> Scene:
@@ -151,13 +151,13 @@ def _is_open_at(wall: DrawnWall, point: Float[np.ndarray, "3"]) -> bool:
     return any(o.from_m <= along <= o.to_m and o.bottom_m <= point[2] <= o.top_m for o in wall.openings)
 
 
-def _over_floors(scene: Scene, ids: Sequence[str], feet: Float[np.ndarray, "n 3"]) -> dict[str, str]:
+def _rooms_of_feet(scene: Scene, ids: Sequence[str], feet: Float[np.ndarray, "n 3"]) -> dict[str, str]:
     floors = [scene.plane(r.floor) for r in scene.rooms]
     under = floor_under(feet, [p.polygon[:, :2] for p in floors], [float(p.centre[2]) for p in floors])
     return {name: scene.rooms[k].id for name, k in zip(ids, under, strict=True) if k is not None}
 
 
-def _before(plane: Plane) -> Float[np.ndarray, "3"]:
+def _point_before_plane(plane: Plane) -> Float[np.ndarray, "3"]:
     """A point in the room that a wall or a ceiling is of, at the foot of a wall."""
     if plane.role == "ceiling":
         x, y = _area(plane.polygon[:, :2]).representative_point().coords[0]

@@ -38,13 +38,13 @@ def line_segments_px(
     # The detector counts from pixel centres; pixels here are squares whose centre is at one half.
     segments = (detected.reshape(-1, 2, 2).astype(np.float64) + 0.5) * stretch
     lengths = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
-    keep = (lengths >= min_length * np.hypot(width, height)) & ~_on_border(segments, width, height)
+    keep = (lengths >= min_length * np.hypot(width, height)) & ~_lie_on_border(segments, width, height)
     order = np.argsort(-lengths[keep], kind="stable")[:max_count]
     return segments[keep][order].reshape(-1, 4)
 
 
-def _on_border(segments: Float[np.ndarray, "n 2 2"], width: int, height: int) -> Bool[np.ndarray, "n"]:
-    """Segments whose both ends lie within half a percent of the same side of the picture."""
+def _lie_on_border(segments: Float[np.ndarray, "n 2 2"], width: int, height: int) -> Bool[np.ndarray, "n"]:
+    """True for segments whose both ends lie within half a percent of the same side of the picture."""
     margin = 0.005 * max(width, height) + 1.0
     low = np.all(segments < margin, axis=1)
     high = np.all(segments > np.array([width, height]) - margin, axis=1)

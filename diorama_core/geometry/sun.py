@@ -101,7 +101,7 @@ def sun_patches(scene: Scene, direction: Float[np.ndarray, "3"]) -> list[Float[n
         through = [o for o in lit if float(o.normal @ plane.normal) < 0.99]
         shade = _shade(scene, direction, plane) if through else None
         for opening in through:
-            patches += list(_on_plane(opening.corners, direction, plane, shade))
+            patches += list(_sunlit_patches(opening.corners, direction, plane, shade))
     return patches
 
 
@@ -136,7 +136,7 @@ def _shade(scene: Scene, direction: Float[np.ndarray, "3"], plane: Plane) -> Bas
     return unary_union(shadows)
 
 
-def _on_plane(
+def _sunlit_patches(
     opening: Float[np.ndarray, "n 3"], direction: Float[np.ndarray, "3"], plane: Plane, shade: BaseGeometry | None
 ) -> Iterable[Float[np.ndarray, "_ 3"]]:
     """Parts of a plane that the sun reaches through an opening."""

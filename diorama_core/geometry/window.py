@@ -57,7 +57,7 @@ class Window:
         x1, y1, x2, y2 = self.bounds_px
         total = cv2.integral(np.ascontiguousarray(image[part]), sdepth=cv2.CV_64F)
         lines = np.linspace(0.0, 1.0, self.cells + 1)
-        sums = _at(total, y1 + (y2 - y1) * lines - rows.start, x1 + (x2 - x1) * lines - columns.start)
+        sums = _sample_bilinear(total, y1 + (y2 - y1) * lines - rows.start, x1 + (x2 - x1) * lines - columns.start)
         areas = np.diff(np.diff(sums, axis=0), axis=1)
         cell = (x2 - x1) * (y2 - y1) / self.cells**2
         return areas.reshape(self.cells**2, *image.shape[2:]) / max(cell, 1e-12)
@@ -77,7 +77,7 @@ class Window:
         return image[y, x]
 
 
-def _at(integral: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+def _sample_bilinear(integral: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
     """The integral image between its samples (bilinear), for every row and column."""
     rows = np.clip(rows, 0, integral.shape[0] - 1)
     columns = np.clip(columns, 0, integral.shape[1] - 1)

@@ -141,7 +141,7 @@ def scannet_frames(folder: Path) -> Frames:
 FRAME_FORMS = (
     FrameForm(
         "Polycam raw data",
-        lambda h: h.is_folder and h.has(".png") and _in(h, "depth/") and _in(h, "cameras/"),
+        lambda h: h.is_folder and h.has(".png") and _has_folder(h, "depth/") and _has_folder(h, "cameras/"),
         polycam_frames,
     ),
     FrameForm(
@@ -156,13 +156,13 @@ FRAME_FORMS = (
     ),
     FrameForm(
         "ScanNet frames",
-        lambda h: h.is_folder and "intrinsic/intrinsic_depth.txt" in h.names and _in(h, "pose/"),
+        lambda h: h.is_folder and "intrinsic/intrinsic_depth.txt" in h.names and _has_folder(h, "pose/"),
         scannet_frames,
     ),
 )  # fmt: skip
 
 
-def _in(head: FileHead, folder: str) -> bool:
+def _has_folder(head: FileHead, folder: str) -> bool:
     return any(name.startswith(folder) or f"/{folder}" in name or f"_{folder}" in name for name in head.names)
 
 

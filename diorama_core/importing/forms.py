@@ -122,7 +122,7 @@ def marked_file(path: Path) -> MarkedFile | None:
 R = TypeVar("R", MarkedFile | None, MeasuredRoom | None)
 
 
-def _in_known_unit(content: R, path: Path, unit_m: float | None) -> R:
+def _refuse_unit(content: R, path: Path, unit_m: float | None) -> R:
     """Content that says its own unit; raises `InputError` where somebody gives another."""
     if content is not None and unit_m is not None:
         raise InputError(f"{path.name} says its unit itself; leave out --unit")
@@ -130,17 +130,17 @@ def _in_known_unit(content: R, path: Path, unit_m: float | None) -> R:
 
 
 def _gltf(path: Path, progress: Progress, unit_m: float | None) -> Content:
-    marked = _in_known_unit(read_marked_gltf(path), path, unit_m)
+    marked = _refuse_unit(read_marked_gltf(path), path, unit_m)
     return marked or _scan_or_parts(*parts_of_gltf(path, unit_m))
 
 
 def _usd(path: Path, progress: Progress, unit_m: float | None) -> Content:
-    marked = _in_known_unit(read_marked_usd(path), path, unit_m)
-    return marked or _in_known_unit(read_room_plan(path), path, unit_m) or _scan_or_parts(*parts_of_usd(path, unit_m))
+    marked = _refuse_unit(read_marked_usd(path), path, unit_m)
+    return marked or _refuse_unit(read_room_plan(path), path, unit_m) or _scan_or_parts(*parts_of_usd(path, unit_m))
 
 
 def _room_plan(path: Path, progress: Progress, unit_m: float | None) -> Content:
-    room = _in_known_unit(read_room_plan(path), path, unit_m)
+    room = _refuse_unit(read_room_plan(path), path, unit_m)
     if room is None:
         raise InputError(f"{path.name} is no scan of RoomPlan (there are no walls in it); export the scan again")
     return room

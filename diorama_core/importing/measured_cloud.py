@@ -144,17 +144,19 @@ def _levels(heights: Float[np.ndarray, "n"]) -> _Levels:
     # A table is the lowest level where nobody scanned the floor: walls go on below it.
     floors = [b for b in strong[:1] if (heights < edges[b] - LEVEL_M).mean() < BEYOND_SHARE]
     floored, closed = bool(floors), False
-    floor_m = _at(heights, float(edges[floors[0]]), 2.5 * LEVEL_M) if floored else float(np.quantile(heights, 0.005))
+    floor_m = (
+        _median_near(heights, float(edges[floors[0]]), 2.5 * LEVEL_M) if floored else float(np.quantile(heights, 0.005))
+    )
     top_m = float(np.quantile(heights, 0.999))
     for b in strong[-1:]:
         closed = bool(edges[b] > floor_m + LOWEST_ROOM_M and (heights > edges[b] + 2 * LEVEL_M).mean() < BEYOND_SHARE)
-        top_m = _at(heights, float(edges[b]), 2.5 * LEVEL_M) if closed else top_m
+        top_m = _median_near(heights, float(edges[b]), 2.5 * LEVEL_M) if closed else top_m
     if top_m < floor_m + 0.5:
         raise InputError("there is no room in the points: nothing rises from their lowest level; check that up is up")
     return _Levels(floor_m, top_m, floored, closed)
 
 
-def _at(values: Float[np.ndarray, "n"], near: float, within: float) -> float:
+def _median_near(values: Float[np.ndarray, "n"], near: float, within: float) -> float:
     return float(np.median(values[np.abs(values - near) <= within]))
 
 
@@ -220,7 +222,7 @@ def _lines(points: Float[np.ndarray, "n 3"], top_m: float, axis: int) -> list[fl
         if length[index] < MIN_WALL_M:
             break
         near = float(low - APART_M + index * LINE_M)
-        at = _at(band[:, axis], near, LINE_M) if (np.abs(band[:, axis] - near) <= LINE_M).any() else near
+        at = _median_near(band[:, axis], near, LINE_M) if (np.abs(band[:, axis] - near) <= LINE_M).any() else near
         if all(abs(at - other_at) > APART_M for other_at, _ in weighted):
             weighted.append((at, float(length[index])))
     lines = [at for at, _ in weighted]

@@ -141,14 +141,14 @@ def _gap(box: MeasuredBox, direction: Float[np.ndarray, "3"], walls: Sequence[Pl
         abs(float(w.normal @ face) - w.offset)
         for w in walls
         if w.normal @ direction < -0.94
-        and _beside(w, face, box.size_m[1] / 2)
+        and _is_before_wall(w, face, box.size_m[1] / 2)
         and w.polygon[:, 2].min() < box.centre[2] < w.polygon[:, 2].max()
     ]
     return min(gaps, default=np.inf)
 
 
-def _beside(wall: Plane, point: Float[np.ndarray, "3"], reach_m: float) -> bool:
-    """Whether a point lies before the wall rather than beyond its ends."""
+def _is_before_wall(wall: Plane, point: Float[np.ndarray, "3"], reach_m: float) -> bool:
+    """True for a point before the wall rather than beyond its ends."""
     along = np.cross([0.0, 0.0, 1.0], wall.normal)
     span = wall.polygon @ along
     return bool(span.min() - reach_m < point @ along < span.max() + reach_m)
@@ -238,7 +238,9 @@ def _wall_of(opening: MeasuredOpening, walls: Sequence[Plane]) -> Plane | None:
     if named is not None or not walls:
         return named
     near = [
-        (abs(float(w.normal @ opening.centre) - w.offset), w.id, w) for w in walls if _beside(w, opening.centre, 0.0)
+        (abs(float(w.normal @ opening.centre) - w.offset), w.id, w)
+        for w in walls
+        if _is_before_wall(w, opening.centre, 0.0)
     ]
     return min(near)[2] if near and min(near)[0] < AT_WALL_M else None
 

@@ -36,7 +36,7 @@ def parts_of_gltf(path: Path, unit_m: float | None = None) -> tuple[tuple[Part, 
         path: The file.
         unit_m: Metres in one unit of it; None believes the format, unless the scene would be larger than a hall.
     """
-    return _in_metres(_model(path), Z_UP, unit_m)
+    return _to_metres(_model(path), Z_UP, unit_m)
 
 
 def shape_parts(path: Path, marked: MarkedFile, item: SceneObject) -> Part | None:
@@ -50,7 +50,7 @@ def shape_parts(path: Path, marked: MarkedFile, item: SceneObject) -> Part | Non
     root = f"{node.name} shape" if f"{node.name} shape" in scene.graph.nodes else node.name
     if root not in scene.graph.nodes:
         return None
-    nodes = [n for n in _below(children, root, others) if n in scene.graph.nodes_geometry]
+    nodes = [n for n in _subtree(children, root, others) if n in scene.graph.nodes_geometry]
     to_shape = np.linalg.inv(node.M_world_shape) @ Z_UP
     return _part(scene, item.category, nodes, root, to_shape) if nodes else None
 
@@ -59,7 +59,7 @@ def parts_of_usd(path: Path, unit_m: float | None = None) -> tuple[tuple[Part, .
     """Objects of a USD or USDZ file, and notes; `parts_of_gltf` says the arguments and errors."""
     stage = opened_stage(path)
     with usd_errors(path):
-        return _in_metres(usd_scene(stage), world_of(stage), unit_m)
+        return _to_metres(usd_scene(stage), world_of(stage), unit_m)
 
 
 def _model(path: Path) -> trimesh.Scene:
@@ -69,7 +69,7 @@ def _model(path: Path) -> trimesh.Scene:
         raise InputError(f"{path.name}: {error}") from error
 
 
-def _in_metres(
+def _to_metres(
     scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"], unit_m: float | None
 ) -> tuple[tuple[Part, ...], tuple[str, ...]]:
     """The parts of a scene, and a note where its unit is not the one it says.
@@ -104,7 +104,7 @@ def split_scene(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tup
             stands = [c for c in loose if _bottom(children, c, boxes) > top - TOUCH_M]
         else:
             stands = []
-        below = [n for n in _below(children, node, set(stands)) if n in boxes]
+        below = [n for n in _subtree(children, node, set(stands)) if n in boxes]
         if not below:
             waiting += reversed(loose)
         elif len(below) == len(nodes) or (node != scene.graph.base_frame and _is_object([boxes[n] for n in below])):
@@ -124,10 +124,10 @@ def _own(children: dict[str, Sequence[str]], node: str, boxes: Mapping[str, obje
 
 
 def _bottom(children: dict[str, Sequence[str]], node: str, boxes: Mapping[str, Float[np.ndarray, "2 3"]]) -> float:
-    return min((float(boxes[n][0, 2]) for n in _below(children, node, frozenset()) if n in boxes), default=-np.inf)
+    return min((float(boxes[n][0, 2]) for n in _subtree(children, node, frozenset()) if n in boxes), default=-np.inf)
 
 
-def _below(children: dict[str, Sequence[str]], node: str, without: frozenset[str] | set[str]) -> Iterator[str]:
+def _subtree(children: dict[str, Sequence[str]], node: str, without: frozenset[str] | set[str]) -> Iterator[str]:
     waiting = [node]
     while waiting:
         here = waiting.pop()

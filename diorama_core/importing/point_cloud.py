@@ -71,7 +71,7 @@ def _scaled(photo: ScanPhoto, factor: float) -> ScanPhoto:
     return replace(photo, camera=Camera(photo.camera.intrinsics, T), unit_m=photo.unit_m * factor)
 
 
-def in_metres(cloud: PointCloud) -> PointCloud:
+def to_metres(cloud: PointCloud) -> PointCloud:
     """The cloud of a format that does not say its unit, without points that float alone."""
     finite = cloud.points[np.isfinite(cloud.points).all(axis=1)]
     if not len(finite):

@@ -28,7 +28,7 @@ from diorama_core.importing.array_clouds import is_array_cloud, is_float_dump, r
 from diorama_core.importing.cloud_units import likely_unit
 from diorama_core.importing.data_set_frames import DATA_SET_FORMS
 from diorama_core.importing.depth_frames import FRAME_FORMS, UP_Y, UP_Z, FrameForm, cloud_of_frames
-from diorama_core.importing.point_cloud import MAX_POINTS, MIN_POINTS, PointCloud, in_metres, points_of_mesh, unit_note
+from diorama_core.importing.point_cloud import MAX_POINTS, MIN_POINTS, PointCloud, points_of_mesh, to_metres, unit_note
 from diorama_core.io.bounded import megabytes, read_bytes, shortened
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.file_heads import FileHead, head_of
@@ -219,7 +219,7 @@ def _from_ply(path: Path) -> PointCloud:
         return PointCloud(points_of_mesh(loaded), UP_Z)
     if isinstance(loaded, trimesh.Trimesh) and len(loaded.vertices):
         return _from_mesh(loaded, None)
-    return in_metres(PointCloud(points_of_mesh(loaded), None))
+    return to_metres(PointCloud(points_of_mesh(loaded), None))
 
 
 def _loaded(path: Path) -> object:
@@ -240,7 +240,7 @@ def _from_array(read: Callable[[Path], Float[np.ndarray, "n 3"]], note: str, pat
     points = read(path)
     far = np.median(points, axis=0) if len(points) else np.zeros(3)
     near = points - np.where(np.abs(far) > 1e4, far, 0.0)  # surveyors' grids
-    return in_metres(PointCloud(near, None, (note,) if note else ()))
+    return to_metres(PointCloud(near, None, (note,) if note else ()))
 
 
 def _from_las(path: Path) -> PointCloud:
@@ -254,7 +254,7 @@ def _from_las(path: Path) -> PointCloud:
         for chunk in reader.chunk_iterator(2_000_000):
             rows.append(np.column_stack([chunk.x, chunk.y, chunk.z])[::step])
     points = np.vstack(rows).astype(np.float64)
-    return in_metres(PointCloud(points - np.append(np.median(points[:, :2], axis=0), 0.0), UP_Z))
+    return to_metres(PointCloud(points - np.append(np.median(points[:, :2], axis=0), 0.0), UP_Z))
 
 
 def _from_e57(path: Path) -> PointCloud:

@@ -170,7 +170,7 @@ def supports_of(scene: Scene) -> tuple[Support, ...]:
     edges = []
     for item in scene.objects:
         wall = _wall(scene, item)
-        below = _below(boxes, item.id)
+        below = _supporter_of(boxes, item.id)
         floor = _floor_under(scene, boxes[item.id])
         hangs = category(item.category).mount == "wall" or (below is None and floor is None)
         if wall is not None and hangs:
@@ -189,7 +189,7 @@ def _floor_under(scene: Scene, box: Float[np.ndarray, "2 3"]) -> Plane | None:
     return next(iter(over or near), None)
 
 
-def _below(boxes: dict[str, Float[np.ndarray, "2 3"]], object_id: str) -> str | None:
+def _supporter_of(boxes: dict[str, Float[np.ndarray, "2 3"]], object_id: str) -> str | None:
     mine = boxes[object_id]
     middle = mine.mean(axis=0)
     under = [

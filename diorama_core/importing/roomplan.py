@@ -54,13 +54,13 @@ def read_room_plan(path: Path) -> MeasuredRoom | None:
         UnavailableError: a USDZ, and usd-core is missing.
     """
     room = read_usd(path) if path.is_file() and path.suffix.lower() != ".json" else _from_json(path)
-    if room is not None and not _within_reach(room):
+    if room is not None and not _is_in_range(room):
         raise InputError(f"{path.name}: something in it is not within {REACH_M / 1000:.0f} km; export the scan again")
     return room
 
 
-def _within_reach(room: MeasuredRoom) -> bool:
-    """Whether all that was measured is finite, and near enough to be computed with."""
+def _is_in_range(room: MeasuredRoom) -> bool:
+    """True if all measurements are finite, and near enough to be computed with."""
     numbers: list[np.ndarray] = [wall.polygon for wall in room.walls]
     numbers += [values for box in room.boxes for values in (box.centre, box.size_m)]
     numbers += [opening.centre for opening in room.openings]

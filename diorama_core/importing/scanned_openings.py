@@ -78,10 +78,10 @@ def scanned_openings(
         floor_outline: the room seen from above, either way round.
     """
     area = signed_area(floor_outline)
-    return tuple(chain.from_iterable(_of_wall(points, wall, np.sign(area)) for wall in walls))
+    return tuple(chain.from_iterable(_wall_openings(points, wall, np.sign(area)) for wall in walls))
 
 
-def _of_wall(points: Float[np.ndarray, "n 3"], wall: MeasuredWall, turn: float) -> list[MeasuredOpening]:
+def _wall_openings(points: Float[np.ndarray, "n 3"], wall: MeasuredWall, turn: float) -> list[MeasuredOpening]:
     start, end = wall.polygon[0], wall.polygon[1]
     length, height = float(np.linalg.norm(end - start)), float(wall.polygon[:, 2].max())
     if length < MIN_SIDE_M:

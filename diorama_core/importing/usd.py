@@ -44,7 +44,7 @@ def _marked(stage: Any) -> MarkedFile | None:
             numbers[prim.GetPath()] = len(nodes)
             scaled = M @ np.diag([*_scale(prim, entry), 1.0])
             name = prim.GetDisplayName() or prim.GetName()
-            nodes.append(ObjectNode(str(entry["id"]), name, scaled, entry, _above(prim, numbers)))
+            nodes.append(ObjectNode(str(entry["id"]), name, scaled, entry, _parent_number(prim, numbers)))
         elif plane is not None and "id" in plane:
             planes[str(plane["id"])] = M
         elif T_world_camera is None and prim.IsA(UsdGeom.Camera):
@@ -75,7 +75,7 @@ def _scale(prim: Any, entry: Any) -> Float[np.ndarray, "3"]:
     return np.array(entry.get("scale", [1.0, 1.0, 1.0]), dtype=np.float64)
 
 
-def _above(prim: Any, numbers: dict[Any, int]) -> int | None:
+def _parent_number(prim: Any, numbers: dict[Any, int]) -> int | None:
     path = prim.GetPath().GetParentPath()
     while not path.isEmpty:
         if path in numbers:

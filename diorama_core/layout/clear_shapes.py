@@ -74,7 +74,7 @@ def _overlaps(scene: Scene, library: ShapeLibrary) -> dict[tuple[str, str], floa
 
 def _better(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, name: str) -> tuple[float, Scene]:
     """The gain (negative, in logarithms) and the scene of the best shape for an object and those of its shape."""
-    members = next(group for group in _of_one_shape(scene) if any(o.id == name for o in group))
+    members = next(group for group in _objects_by_shape(scene) if any(o.id == name for o in group))
     if any(o.locked for o in members):
         return 0.0, scene
     common = set.intersection(*({c.shape_id for c in o.candidates} for o in members))
@@ -111,8 +111,8 @@ def _reshaped(scene: Scene, item: SceneObject, candidate: Candidate) -> Scene:
     return replace(scene, objects=objects, supports=edges)
 
 
-def _of_one_shape(scene: Scene) -> list[list[SceneObject]]:
-    """The objects of a scene, those of one shape together."""
+def _objects_by_shape(scene: Scene) -> list[list[SceneObject]]:
+    """Objects of a scene, grouped by shape."""
     groups: dict[str, list[SceneObject]] = {}
     for item in scene.objects:
         groups.setdefault(item.shape_id, []).append(item)

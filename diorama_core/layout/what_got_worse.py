@@ -76,7 +76,7 @@ def new_problems(before: Problems, after: Problems) -> dict[str, tuple[str, ...]
     return {i: words for i, words in fresh.items() if words}
 
 
-def in_words(report: LayoutReport, worse: Problems, labels: Mapping[str, str]) -> tuple[str, ...]:
+def describe_worse(report: LayoutReport, worse: Problems, labels: Mapping[str, str]) -> tuple[str, ...]:
     """One sentence for everything that got worse; empty where nothing did.
 
     Args:

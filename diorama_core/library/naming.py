@@ -149,7 +149,7 @@ def _nearest(words: Sequence[str], size: Size | None) -> _Near | None:
             return _Near(table[ending], (word,), f"'{word}' is not known; taken for a kind of '{table[ending]}'")
     noun = head[-1]
     if size is not None:
-        category = _by_name_and_size(noun, size)
+        category = _likeliest_category(noun, size)
         return _Near(category, (noun,), f"'{noun}' is not known; by its name and size the nearest is '{category}'")
     return _Near(
         "", (), f"'{noun}' is not known, and no class has a name or use like it; only its words are looked for"
@@ -169,7 +169,7 @@ def _known_ending(word: str) -> tuple[str, ...] | None:
     return next(((word[i:],) for i in range(2, len(word) - 2) if (word[i:],) in names), None)
 
 
-def _by_name_and_size(noun: str, size: Size) -> str:
+def _likeliest_category(noun: str, size: Size) -> str:
     """The category whose names are spelt most like the noun and whose usual sizes fit best."""
     spelling: dict[str, float] = {}
     for name, category in _names().items():

@@ -85,7 +85,7 @@ def physically_based(mesh: trimesh.Trimesh) -> PBRMaterial:
 
 
 def _overridden(source: PBRMaterial, colour: Colour | None, finish: Finish | None) -> PBRMaterial:
-    coloured = source.copy() if colour is None else in_colour(source, colour)
+    coloured = source.copy() if colour is None else recolour(source, colour)
     if finish is not None:
         coloured.name = f"{coloured.name or 'material'} {finish}"
         coloured.metallicFactor, coloured.roughnessFactor = _METALLIC_ROUGHNESS[finish]
@@ -93,8 +93,8 @@ def _overridden(source: PBRMaterial, colour: Colour | None, finish: Finish | Non
     return coloured
 
 
-def in_colour(source: PBRMaterial, colour: Colour) -> PBRMaterial:
-    """The material in a colour (sRGB 0 to 1); its texture stays as light and dark detail."""
+def recolour(source: PBRMaterial, colour: Colour) -> PBRMaterial:
+    """Recolour a material (sRGB 0 to 1); its texture stays as light and dark detail."""
     texture = source.baseColorTexture
     # A bright colour leaves its detail less room: a factor beyond 1 would be cut off and change the hue.
     mean = max(_DETAIL_MEAN, *(float(c) for c in colour))

@@ -13,7 +13,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from diorama_core.io.srgb import srgb_to_linear
-from diorama_core.library.paint import Colour, in_colour, physically_based
+from diorama_core.library.paint import Colour, physically_based, recolour
 from diorama_core.library.slots import Slot, matched, placed_vertices, rectangle_of, slots_of
 from diorama_core.scene.types import PhotoMaterial
 
@@ -69,7 +69,7 @@ def _recolour(scene: trimesh.Scene, slot: Slot, material: PhotoMaterial) -> None
     """
     meshes = [scene.geometry[name] for name in slot.geometry]
     base = physically_based(meshes[0])
-    made = in_colour(base, material.colour)
+    made = recolour(base, material.colour)
     made.name = f"{material.slot} from the photo {zlib.crc32(repr((material, base.name)).encode()):08x}"
     made.metallicFactor, made.roughnessFactor = material.metallic, material.roughness
     painted = slot.role == "wood" and not shows_wood(material.colour)

@@ -21,7 +21,7 @@ from diorama_core.architecture.walls.openings import WallOpening, with_openings
 from diorama_core.architecture.walls.passages import with_passages
 from diorama_core.architecture.walls.wall_sequence import WallPiece
 from diorama_core.artefacts import DetectedObject
-from diorama_core.geometry.planes import clip_polygon, in_polygon, signed_area
+from diorama_core.geometry.planes import clip_polygon, is_in_polygon, signed_area
 from diorama_core.scene.types import Architecture, Camera, Plane
 
 SAME_COSINE = float(np.cos(np.radians(8.0)))
@@ -198,14 +198,14 @@ def _outline(
     )
     grid = np.stack(np.meshgrid(xs, ys), axis=-1).reshape(-1, 2)
     says = _evidence(grid, photos, lines, standing)
-    inside = [c[:, :2] for c in cells if (here := in_polygon(grid, c[:, :2])).any() and says[here].sum() > 0]
+    inside = [c[:, :2] for c in cells if (here := is_in_polygon(grid, c[:, :2])).any() and says[here].sum() > 0]
     if not inside:
         return None
     sections = [manifold3d.CrossSection([c], manifold3d.FillRule.NonZero).offset(1e-4) for c in map(_turned, inside)]
     union = manifold3d.CrossSection.batch_boolean(sections, manifold3d.OpType.Add).simplify(1e-2)
     outlines = [o for o in union.to_polygons() if signed_area(o) > 0]
     eyes = np.array([p.camera.position[:2] for p in photos])
-    best = max(outlines, key=lambda o: (int(in_polygon(eyes, o).sum()), abs(signed_area(o))))
+    best = max(outlines, key=lambda o: (int(is_in_polygon(eyes, o).sum()), abs(signed_area(o))))
     return np.asarray(best, dtype=np.float64)
 
 
@@ -222,7 +222,7 @@ def _evidence(
         floor = photo.architecture.floor
         if floor is None:
             continue
-        within, seen = in_polygon(grid, floor.polygon[:, :2]), _in_view(grid, photo.camera)
+        within, seen = is_in_polygon(grid, floor.polygon[:, :2]), _in_view(grid, photo.camera)
         near = np.exp(-np.linalg.norm(grid - photo.camera.position[:2], axis=1) / SETTINGS.range_m)
         says += np.where(within, np.where(seen, near, SETTINGS.beside_view * near), 0.0)
         for wall in photo.architecture.by_role("wall"):
@@ -234,7 +234,7 @@ def _evidence(
                     np.where(hidden, SETTINGS.shadow, 0.0) + np.where(behind, SETTINGS.behind, 0.0)
                 )
     for footprint in standing:
-        says[in_polygon(grid, footprint)] += SETTINGS.standing
+        says[is_in_polygon(grid, footprint)] += SETTINGS.standing
     for photo in photos:
         says[np.linalg.norm(grid - photo.camera.position[:2], axis=1) < SETTINGS.around_m] += SETTINGS.standing
     return says

@@ -9,7 +9,7 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import SceneError
-from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.geometry.rooms import room_around
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.raycast import MeshCaster
@@ -186,4 +186,4 @@ def _inside(point: np.ndarray, outline: Float[np.ndarray, "n 2"], margin_m: floa
     edges, offset = np.roll(outline, -1, axis=0) - outline, point - outline
     along = np.clip((offset * edges).sum(axis=1) / (edges * edges).sum(axis=1), 0, 1)
     distance = np.linalg.norm(offset - along[:, None] * edges, axis=1)
-    return bool((distance >= margin_m).all() and in_polygon(point, outline))
+    return bool((distance >= margin_m).all() and is_in_polygon(point, outline))

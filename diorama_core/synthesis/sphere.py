@@ -11,7 +11,7 @@ from jaxtyping import Float, Int32, UInt8
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import SceneError
-from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.geometry.sphere import directions
 from diorama_core.scene.types import Camera, Intrinsics, Scene, SceneObject, yaw_rotation
@@ -79,7 +79,7 @@ def sphere_place(scene: Scene, seed: int) -> Float[np.ndarray, "4 4"]:
         -1, 2
     )
     eyes = np.column_stack([grid, np.full(len(grid), height_m)])
-    free = in_polygon(grid, outline)
+    free = is_in_polygon(grid, outline)
     for plane in scene.architecture.planes:
         free &= eyes @ plane.normal - plane.offset > CLEARANCE_M * (plane.role != "floor")
     for item in scene.objects:

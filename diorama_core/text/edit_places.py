@@ -13,7 +13,7 @@ from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.relations import OF_ROOM, Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import EditRefused
-from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene import edits
 from diorama_core.scene.support import ancestors, descendants
@@ -263,4 +263,4 @@ def _off_its_support(scene: Scene, object_id: str) -> bool:
     if edge is None or not scene.has_object(edge.parent) or broad(scene.object(edge.parent).category) == "rug":
         return False
     place = scene.object(object_id).pose.position[None, :2]
-    return not bool(in_polygon(place, footprint_of(scene.object(edge.parent)))[0])
+    return not bool(is_in_polygon(place, footprint_of(scene.object(edge.parent)))[0])

@@ -19,7 +19,7 @@ from onnx import numpy_helper
 from torch import nn
 
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations
-from diorama_core.evaluation.benchmarks.recognition import in_photo
+from diorama_core.evaluation.benchmarks.recognition import read_annotated_photo
 from diorama_core.library.form import MEASURED
 from diorama_core.models.recogniser import places
 from diorama_core.progress import SILENT, Progress
@@ -73,7 +73,7 @@ def labelled_photos(annotations: Path, folder: Path, categories: Sequence[str]) 
         path = picture_of(folder, name)
         if path is None:
             continue
-        inputs, boxes = in_photo(path, about)
+        inputs, boxes = read_annotated_photo(path, about)
         rgb = inputs.photo.rgb
         scale = min(1.0, LONGEST_PX / max(rgb.shape[:2]))
         if scale < 1.0:

@@ -17,7 +17,7 @@ from scipy.optimize import minimize
 from scipy.special import log_softmax
 
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations
-from diorama_core.evaluation.benchmarks.recognition import in_photo
+from diorama_core.evaluation.benchmarks.recognition import read_annotated_photo
 from diorama_core.io import assets
 from diorama_core.io.derived import write_arrays
 from diorama_core.library.labels import meanings
@@ -72,7 +72,7 @@ def looks_of(sources: Sequence[tuple[Path, Path]], alone: Recogniser, evidence: 
             asked = [k for k, item in enumerate(about.objects) if item.kind in column and item.nameable]
             if path is None or not asked:
                 continue
-            inputs, boxes = in_photo(path, about)
+            inputs, boxes = read_annotated_photo(path, about)
             rgb, boxes = inputs.photo.rgb, boxes[asked]
             kinds = np.array([column[about.objects[k].kind] for k in asked])
             looks.append(AnnotatedLooks(alone.name(rgb, boxes), *evidence.look(rgb, boxes), kinds, boxes))

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from diorama_core.export.bodies import hull_volume
-from diorama_core.export.overlaps import GAP_M, MIN_PIECE_M, SKIN_M, outside, seated
+from diorama_core.export.overlaps import GAP_M, MIN_PIECE_M, SKIN_M, seated, subtract_convex
 
 
 def box(lower: tuple[float, float, float], upper: tuple[float, float, float]) -> np.ndarray:
@@ -33,7 +33,7 @@ def test_it_does_not_reach_what_is_lower_than_it_lay() -> None:
 
 def test_a_hole_takes_from_a_part_what_both_fill_and_nothing_else() -> None:
     part, hole = box((0, 0, 0), (1, 1, 1)), box((0.7, 0.6, -1), (2, 2, 2))
-    pieces = outside(part, hole)
+    pieces = subtract_convex(part, hole)
     assert np.isclose(sum(map(hull_volume, pieces)), 1 - (0.3 + GAP_M) * (0.4 + GAP_M), atol=0.01)
     for piece in pieces:
         assert piece[:, 0].max() <= 0.7 - GAP_M + 1e-6 or piece[:, 1].max() <= 0.6 - GAP_M + 1e-6
@@ -41,5 +41,5 @@ def test_a_hole_takes_from_a_part_what_both_fill_and_nothing_else() -> None:
 
 def test_what_is_inside_a_hole_or_thinner_than_a_piece_is_gone() -> None:
     hole = box((0, 0, 0), (1, 1, 1))
-    assert outside(box((0.2, 0.2, 0.2), (0.4, 0.4, 0.4)), hole) == []
-    assert outside(box((0.2, 0.2, 0.2), (1 + GAP_M + MIN_PIECE_M / 2, 0.4, 0.4)), hole) == []
+    assert subtract_convex(box((0.2, 0.2, 0.2), (0.4, 0.4, 0.4)), hole) == []
+    assert subtract_convex(box((0.2, 0.2, 0.2), (1 + GAP_M + MIN_PIECE_M / 2, 0.4, 0.4)), hole) == []

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from diorama_core.geometry.casting import cast_plane
-from diorama_core.geometry.planes import in_plane_polygon
+from diorama_core.geometry.planes import is_in_plane_polygon
 from diorama_core.scene.types import Plane
 
 L = Plane("l", "floor", np.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0], [1, 2, 0], [0, 2, 0]], dtype=float))
@@ -34,4 +34,4 @@ def test_every_point_of_a_grid_is_judged_as_by_its_triangles():
     grid = np.stack(np.meshgrid(np.linspace(-0.45, 2.45, 30), np.linspace(-0.45, 2.45, 30), [0.0]), axis=-1)
     x, y = grid[..., 0], grid[..., 1]
     expected = (x > 0) & (y > 0) & (x < 2) & (y < 2) & ~((x > 1) & (y > 1))
-    np.testing.assert_array_equal(in_plane_polygon(grid, L), expected)
+    np.testing.assert_array_equal(is_in_plane_polygon(grid, L), expected)

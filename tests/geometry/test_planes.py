@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from diorama_core.geometry.casting import cast_box, cast_plane, cast_planes
 from diorama_core.geometry.depth_grid import points_camera, smooth_normals_camera
-from diorama_core.geometry.planes import clip_polygon, in_polygon, plane_axes, plane_uv, ransac_plane
+from diorama_core.geometry.planes import clip_polygon, is_in_polygon, plane_axes, plane_uv, ransac_plane
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.scene.types import Intrinsics, Plane
 from tests.synthetic_rooms import box_room, wall
@@ -144,6 +144,6 @@ def test_plane_needs_no_particular_start():
 def test_points_are_within_an_l_but_not_in_its_notch():
     outline = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.0, 2.0], [2.0, 4.0], [0.0, 4.0]])
     points = np.array([[1.0, 1.0], [3.0, 1.0], [1.0, 3.0], [3.0, 3.0], [5.0, 1.0], [-0.1, 1.0]])
-    assert in_polygon(points, outline).tolist() == [True, True, True, False, False, False]
-    assert in_polygon(points, outline[::-1]).tolist() == in_polygon(points, outline).tolist()
-    assert not in_polygon(points, np.zeros((0, 2))).any()
+    assert is_in_polygon(points, outline).tolist() == [True, True, True, False, False, False]
+    assert is_in_polygon(points, outline[::-1]).tolist() == is_in_polygon(points, outline).tolist()
+    assert not is_in_polygon(points, np.zeros((0, 2))).any()

@@ -6,7 +6,7 @@ import pytest
 from diorama_core.artefacts import LayoutReport
 from diorama_core.layout.what_got_worse import (
     MAX_RESIZE,
-    in_words,
+    describe_worse,
     new_problems,
     resized_in_words,
     resized_too_much,
@@ -31,11 +31,11 @@ def test_only_what_is_new_got_worse() -> None:
 
 def test_objects_in_the_air_are_named() -> None:
     worse = {"vase_1": ("floats",), "bowl_1": ("floats",)}
-    assert in_words(report({}, {}), worse, LABELS) == ("2 objects float: vase, bowl.",)
+    assert describe_worse(report({}, {}), worse, LABELS) == ("2 objects float: vase, bowl.",)
 
 
 def test_figures_that_got_worse_are_told() -> None:
-    lines = in_words(
+    lines = describe_worse(
         report(
             {"overlapping_pairs": 1.0, "part_overlap_m": 0.02},
             {"overlapping_pairs": 2.0, "part_overlap_m": 0.02, "moved_m": 0.73},
@@ -49,7 +49,7 @@ def test_figures_that_got_worse_are_told() -> None:
 
 @pytest.mark.parametrize("after", [{"overlapping_pairs": 0.0, "part_overlap_m": 0.0, "moved_m": 0.1}, {}])
 def test_nothing_is_said_where_nothing_got_worse(after: dict[str, float]) -> None:
-    assert in_words(report({"overlapping_pairs": 1.0, "part_overlap_m": 0.05}, after), {}, LABELS) == ()
+    assert describe_worse(report({"overlapping_pairs": 1.0, "part_overlap_m": 0.05}, after), {}, LABELS) == ()
 
 
 def _sized(factor: float) -> Scene:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import DetectedObject
-from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.multiview.joint_room import SeenRoom, joint_room, with_open_doorways
 from diorama_core.scene.types import Architecture, Plane
 from tests.multiview.rooms import camera
@@ -64,8 +64,8 @@ def test_walls_look_into_the_room_and_stand_on_its_outline() -> None:
     outline = found.by_role("floor")[0].polygon[:, :2]
     for plane in found.by_role("wall"):
         middle = plane.polygon[:2, :2].mean(axis=0)
-        assert in_polygon((middle + 0.1 * plane.normal[:2])[None], outline).all()
-        assert not in_polygon((middle - 0.1 * plane.normal[:2])[None], outline).any()
+        assert is_in_polygon((middle + 0.1 * plane.normal[:2])[None], outline).all()
+        assert not is_in_polygon((middle - 0.1 * plane.normal[:2])[None], outline).any()
         assert plane.polygon[:2, 2] == pytest.approx(0.0)
         assert plane.polygon[2:, 2] == pytest.approx(TOP_M)
 

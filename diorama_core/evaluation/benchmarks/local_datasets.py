@@ -164,7 +164,7 @@ def _ssdb_case(scene: SsdbScene) -> LocalCase:
 
 def _measured(case: LocalCase, library: ShapeLibrary, progress: Progress) -> LocalResult:
     asked = [number for number, _ in case.inputs.instance_boxes]
-    models = () if case.frame is None else tuple(m for m in case.frame.models if _in_picture(m, case.frame))
+    models = () if case.frame is None else tuple(m for m in case.frame.models if _is_in_picture(m, case.frame))
     begun = time.process_time()
     try:
         scene = build_scene(case.inputs, library, progress=Progress(token=progress.token)).scene
@@ -228,7 +228,7 @@ def aligned(models: Sequence[AlignedModel], scene: Scene, frame: ScanFrame) -> t
     return tuple(rows)
 
 
-def _in_picture(model: AlignedModel, frame: ScanFrame) -> bool:
+def _is_in_picture(model: AlignedModel, frame: ScanFrame) -> bool:
     x, y, z = frame.camera.to_camera(model.centre[None])[0]
     k = frame.camera.intrinsics
     return bool(z > 0 and 0 <= k.fx * x / z + k.cx < k.width and 0 <= k.fy * y / z + k.cy < k.height)

@@ -168,7 +168,7 @@ def run(
             spent[given].append(times)
             lights += [] if off_deg is None else [(given, off_deg)]
     progress.report(1.0, "done")
-    seconds = tuple((given, *_for_an_object(times)) for given, times in spent.items() if times)
+    seconds = tuple((given, *_mean_times(times)) for given, times in spent.items() if times)
     return LookBench(seed, tuple(objects), seconds, tuple(lights))
 
 
@@ -285,7 +285,7 @@ def _index(scene: Scene, object_id: str) -> int:
     return next(k for k, item in enumerate(scene.objects) if item.id == object_id)
 
 
-def _for_an_object(times: Sequence[tuple[float, float, int]]) -> tuple[float, float]:
+def _mean_times(times: Sequence[tuple[float, float, int]]) -> tuple[float, float]:
     made, materials, count = np.sum(times, axis=0)
     return float(made / count), float(materials / count)
 

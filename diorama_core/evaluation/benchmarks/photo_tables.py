@@ -33,7 +33,7 @@ def _median(values: Sequence[float | None]) -> float | None:
     return float(np.median(known)) if known else None
 
 
-def _of_objects(
+def _pool_objects(
     value: Callable[[ObjectResult], float | None], pooled: Callable[[Sequence[float | None]], float | None] = _mean
 ) -> Callable[[Results], float | None]:
     return lambda results: pooled([value(o) for r in results for o in r.objects])
@@ -43,25 +43,27 @@ def _form(results: Results) -> float | None:
     return _mean([right for r in results for o in r.objects for right in o.form.values()])
 
 
-def _of_photos(value: Callable[[PhotoScores], float | None]) -> Callable[[Results], float | None]:
+def _pool_photos(value: Callable[[PhotoScores], float | None]) -> Callable[[Results], float | None]:
     return lambda results: _mean([value(r) for r in results if not r.failure])
 
 
 OF_OBJECTS = (
-    Figure(Column("kind first", better="↑"), _of_objects(lambda o: o.kind_first)),
-    Figure(Column("among", better="↑"), _of_objects(lambda o: o.kind_among)),
-    Figure(Column("loose", better="↑"), _of_objects(lambda o: o.kind_first if o.loose else None)),
+    Figure(Column("kind first", better="↑"), _pool_objects(lambda o: o.kind_first)),
+    Figure(Column("among", better="↑"), _pool_objects(lambda o: o.kind_among)),
+    Figure(Column("loose", better="↑"), _pool_objects(lambda o: o.kind_first if o.loose else None)),
     Figure(Column("form", better="↑"), _form),
-    Figure(Column("colour", ".1f", "↓"), _of_objects(lambda o: o.colour_difference, _median)),
-    Figure(Column("no colour", better="↓"), _of_objects(lambda o: None if o.has_colour is None else not o.has_colour)),
-    Figure(Column("front", better="↑"), _of_objects(lambda o: o.front)),
-    Figure(Column("supporter", better="↑"), _of_objects(lambda o: o.supporter)),
-    Figure(Column("box IoU", better="↑"), _of_objects(lambda o: o.iou)),
+    Figure(Column("colour", ".1f", "↓"), _pool_objects(lambda o: o.colour_difference, _median)),
+    Figure(
+        Column("no colour", better="↓"), _pool_objects(lambda o: None if o.has_colour is None else not o.has_colour)
+    ),
+    Figure(Column("front", better="↑"), _pool_objects(lambda o: o.front)),
+    Figure(Column("supporter", better="↑"), _pool_objects(lambda o: o.supporter)),
+    Figure(Column("box IoU", better="↑"), _pool_objects(lambda o: o.iou)),
 )
 OF_PHOTOS = (
-    Figure(Column("ghosts", better="↓"), _of_photos(lambda r: r.ghosts)),
-    Figure(Column("unmarked", better="↓"), _of_photos(lambda r: r.ghosts_unmarked)),
-    Figure(Column("time s", ".1f", "↓"), _of_photos(lambda r: r.seconds)),
+    Figure(Column("ghosts", better="↓"), _pool_photos(lambda r: r.ghosts)),
+    Figure(Column("unmarked", better="↓"), _pool_photos(lambda r: r.ghosts_unmarked)),
+    Figure(Column("time s", ".1f", "↓"), _pool_photos(lambda r: r.seconds)),
 )
 FIGURES = (*OF_OBJECTS, *OF_PHOTOS)
 _OBJECTS = Column("objects", "d")

@@ -39,7 +39,7 @@ from diorama_core.evaluation.benchmarks.pose_tables import (
 )
 from diorama_core.evaluation.benchmarks.retrieval import object_groups
 from diorama_core.evaluation.metrics.pose import object_alignment, pair_checks
-from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched
+from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, matched
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe
@@ -258,7 +258,7 @@ def _arrange(
 
 def with_true_graph(view: TruthView, scene: Scene) -> Scene:
     """The prediction with the true support edges among the objects that were found; planes by role and nearness."""
-    scene = in_true_world(scene, view)
+    scene = align_to_truth(scene, view)
     truth = [view.scene.objects[k] for k in view.asked]
     names = {t.id: m.id for t, m in zip(truth, matched(truth, scene)) if m is not None}
     edges = []
@@ -282,7 +282,7 @@ def _same_plane(view: TruthView, scene: Scene, plane_id: str) -> str | None:
 
 def with_true_architecture(view: TruthView, scene: Scene) -> Scene:
     """The prediction in the true room; edges to planes go to the true plane that faces most alike and is nearest."""
-    scene = in_true_world(scene, view)
+    scene = align_to_truth(scene, view)
     true = view.scene.architecture
     renamed = {}
     for plane in scene.architecture.planes:
@@ -308,7 +308,7 @@ def _count_groups(
     view: TruthView, scene: Scene | None, library: ShapeLibrary, groups: dict[str, list[tuple[float, ...]]]
 ) -> None:
     truth = [view.scene.objects[k] for k in view.asked]
-    match = [None] * len(truth) if scene is None else matched(truth, in_true_world(scene, view))
+    match = [None] * len(truth) if scene is None else matched(truth, align_to_truth(scene, view))
     true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
     placed = [None if m is None else as_placed(m) for m in match]
     checks = pair_checks(true, placed)

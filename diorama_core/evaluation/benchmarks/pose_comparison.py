@@ -22,7 +22,7 @@ from diorama_core.artefacts import (
     RankedShapes,
 )
 from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, scene_alignment
-from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched, relation_accuracy, structure_of
+from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, matched, relation_accuracy, structure_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
@@ -90,7 +90,7 @@ def pose_scores(view: TruthView, scene: Scene | None, library: ShapeLibrary) -> 
     """Alignment, relations and overlap of a predicted scene; everything wrong where there is none."""
     if scene is None:
         return PoseScores.failed(len(view.asked))
-    scene = in_true_world(scene, view)
+    scene = align_to_truth(scene, view)
     truth = [view.scene.objects[k] for k in view.asked]
     match = matched(truth, scene)
     placed = [None if m is None else as_placed(m) for m in match]

@@ -161,7 +161,7 @@ def run(
     rng = np.random.default_rng(CLICKS_SEED)
     for k, (name, path) in enumerate(present.items()):
         progress.report(k / len(present), name)
-        inputs, boxes = in_photo(path, known[name])
+        inputs, boxes = read_annotated_photo(path, known[name])
         for route, stage in routes.items():
             boxes_by_route[route][name] = _look(stage, inputs.photo, boxes, known[name])
         for way, namer in namers.items():
@@ -172,7 +172,7 @@ def run(
     return RecognitionBench(boxes_by_route, named, clicked)
 
 
-def in_photo(path: Path, photo: AnnotatedPhoto) -> tuple[Inputs, Float[np.ndarray, "n 4"]]:
+def read_annotated_photo(path: Path, photo: AnnotatedPhoto) -> tuple[Inputs, Float[np.ndarray, "n 4"]]:
     """A photo as a build reads it, and the annotated boxes in its pixels."""
     inputs = read_inputs(path).inputs
     height, width = inputs.photo.rgb.shape[:2]

@@ -189,12 +189,12 @@ def shares_right(reviewed: KnownScene, order: Order) -> list[tuple[float, int]]:
             over.add(question.id)
             value = reviewed.answer(scene, question)
             if value is not None:
-                scene, done = _after(scene, question, value, reviewed.library), done + 1
+                scene, done = _apply_answer(scene, question, value, reviewed.library), done + 1
         shares.append(reviewed.score(scene))
     return shares
 
 
-def _after(scene: Scene, question: Question, value: str, library: ShapeLibrary) -> Scene:
+def _apply_answer(scene: Scene, question: Question, value: str, library: ShapeLibrary) -> Scene:
     try:
         return answered(scene, library, question.id, value)
     except EditRefused:  # the library has no such kind

@@ -14,7 +14,7 @@ from diorama_core.evaluation.benchmarks.review import RIGHT_DEG, answers_table
 from diorama_core.evaluation.benchmarks.system import unnamed
 from diorama_core.evaluation.benchmarks.views import photographed
 from diorama_core.evaluation.metrics.pose import object_alignment, rotation_angle, symmetry_turns
-from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched
+from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, matched
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.pipeline.run import build_scene
@@ -72,7 +72,7 @@ class KnownRoom:
         """How many of the objects that the photo shows are where, as large and turned as in the room."""
         items = [self.view.scene.objects[k] for k in self.view.asked]
         true = [as_placed(t, self.all_shapes.shape(t.shape_id).symmetry) for t in items]
-        placed = [None if m is None else as_placed(m) for m in matched(items, in_true_world(scene, self.view))]
+        placed = [None if m is None else as_placed(m) for m in matched(items, align_to_truth(scene, self.view))]
         alignment = object_alignment(true, placed)
         return alignment.acc * alignment.count, alignment.count
 
@@ -95,7 +95,7 @@ class KnownRoom:
                 after = answered(scene, self.library, question.id, turn)
             except EditRefused:
                 continue
-            R = in_true_world(after, self.view).object(question.object_id).pose.R_world_object
+            R = align_to_truth(after, self.view).object(question.object_id).pose.R_world_object
             off[turn] = float(rotation_angle(true.pose.R_world_object @ turns, R).min())
         best = min(off, key=lambda turn: off[turn])
         return best if off[best] <= np.deg2rad(RIGHT_DEG) else None
@@ -140,7 +140,7 @@ def run(
         given: Inputs = photo_only(view) if named else unnamed(view)
         scene = build_scene(given, searched, stages=embedded_stages(given, searched)).scene
         items = [view.scene.objects[k] for k in view.asked]
-        pairs = zip(items, matched(items, in_true_world(scene, view)), strict=True)
+        pairs = zip(items, matched(items, align_to_truth(scene, view)), strict=True)
         truth = {match.id: true for true, match in pairs if match is not None}
         rooms.append(KnownRoom(scene, view, truth, searched, library))
     progress.report(1.0, "done")

@@ -233,16 +233,16 @@ def _with_true(
         factor, eye = _farther(cuboid, geometry, true, view), geometry.camera.position
         cuboid = replace(cuboid, centre=eye + factor * (cuboid.centre - eye), size_m=factor * cuboid.size_m)
     if "rotation" in given:
-        size = along(cuboid.size_m, cuboid.R_world_object, R_true)
+        size = size_along_axes(cuboid.size_m, cuboid.R_world_object, R_true)
         cuboid = replace(cuboid, R_world_object=R_true, size_m=size, front_known=True)
     if "size" in given:
-        size = along(np.asarray(true.size_m), R_true, cuboid.R_world_object)
+        size = size_along_axes(np.asarray(true.size_m), R_true, cuboid.R_world_object)
         rise = np.array([0.0, 0.0, (size[2] - cuboid.size_m[2]) / 2])
         cuboid = replace(cuboid, size_m=size, centre=cuboid.centre + rise)
     return cuboid
 
 
-def along(
+def size_along_axes(
     size: Float[np.ndarray, "3"], R_from: Float[np.ndarray, "3 3"], R_to: Float[np.ndarray, "3 3"]
 ) -> Float[np.ndarray, "3"]:
     """Extents along the axes of `R_from` as extents along those axes of `R_to` that are nearest to them."""

@@ -20,7 +20,7 @@ from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import Cancelled
 from diorama_core.evaluation.benchmarks.cases import MIN_ASKED, SIZE, Case, LeftOut, furnished, made, recipe
 from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, pooled
-from diorama_core.evaluation.metrics.scene import as_placed, in_true_world, matched
+from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, matched
 from diorama_core.evaluation.reports.tables import Column, Row, Table, bootstrap_interval
 from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.library.record import ShapeLibrary
@@ -251,7 +251,7 @@ class _Room:
         begun, truth = time.process_time(), views[0].truth
         items = [truth.scene.objects[k] for k in truth.asked]
         try:
-            scene = in_true_world(build(views), truth)
+            scene = align_to_truth(build(views), truth)
         except Cancelled:
             raise
         except Exception as error:  # whatever goes wrong, the scene counts as failed

@@ -15,7 +15,7 @@ from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
 from diorama_core.geometry.casting import camera_rays, cast_planes
-from diorama_core.geometry.planes import in_plane_polygon, plane_rectangle
+from diorama_core.geometry.planes import is_in_plane_polygon, plane_rectangle
 from diorama_core.scene.types import Camera, Plane
 
 VIEW_STEP = 2
@@ -88,7 +88,7 @@ def architecture_scores(
         angle_deg: Tolerance within which a plane counts as found.
         offset_m: Likewise, of its distance.
     """
-    aligned = tuple(_in_world_of(p, found_camera, camera) for p in estimated) if found_camera is not None else estimated
+    aligned = tuple(_align_plane(p, found_camera, camera) for p in estimated) if found_camera is not None else estimated
     a = layout_view(estimated, found_camera or camera)
     b = layout_view(true, camera)
     if a.labels.shape != b.labels.shape:
@@ -192,7 +192,7 @@ def plane_points(planes: tuple[Plane, ...], spacing_m: float = SAMPLE_M) -> Floa
         steps = [(np.arange(n) + 0.5) * (e / n) for e in extents for n in [max(1, round(float(e) / spacing_m))]]
         grid = np.stack(np.meshgrid(*steps), axis=-1).reshape(-1, 2)
         on_plane = origin + grid @ axes.T
-        points.append(on_plane[in_plane_polygon(on_plane, plane)])
+        points.append(on_plane[is_in_plane_polygon(on_plane, plane)])
     return np.concatenate(points)
 
 
@@ -305,7 +305,7 @@ def _visible(planes: tuple[Plane, ...], camera: Camera) -> list[tuple[Plane, Flo
     return seen
 
 
-def _in_world_of(plane: Plane, from_camera: Camera, to_camera: Camera) -> Plane:
+def _align_plane(plane: Plane, from_camera: Camera, to_camera: Camera) -> Plane:
     """A plane moved so that it lies to the second camera as it did to the first."""
     polygon = _moved(plane.polygon, from_camera, to_camera)
     return Plane(plane.id, plane.role, polygon, plane.thickness, confidence=plane.confidence)

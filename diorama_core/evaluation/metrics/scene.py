@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from diorama_core.evaluation.metrics.pose import Alignment, Placed, object_alignment, scene_alignment, without_symmetry
 from diorama_core.evaluation.metrics.shape import shape_distance, shape_points
-from diorama_core.geometry.planes import in_plane_polygon
+from diorama_core.geometry.planes import is_in_plane_polygon
 from diorama_core.geometry.projection import box_iou
 from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.layout.exact import drift, mesh_overlap_m3, stable_share
@@ -122,7 +122,7 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
     if not scene.objects:
         return SceneScores.failed(len(truth))
     height_off = _height_off(scene, view)
-    scene = in_true_world(scene, view)
+    scene = align_to_truth(scene, view)
     match = matched(truth, scene)
     placed = [None if m is None else as_placed(m) for m in match]
     true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
@@ -176,7 +176,7 @@ def _height_off(scene: Scene, view: TruthView) -> float | None:
     return above / float(view.camera.position[2]) - 1.0
 
 
-def in_true_world(scene: Scene, view: TruthView) -> Scene:
+def align_to_truth(scene: Scene, view: TruthView) -> Scene:
     """A prediction moved so that its camera is the true one."""
     if scene.camera is None:
         return scene
@@ -278,7 +278,7 @@ def out_of_bounds_share(scene: Scene, samples: int = 12) -> float:
     for item in scene.objects:
         local = np.column_stack([grid * np.asarray(item.shape_size_m)[:2], np.zeros(len(grid))])
         points = item.pose.apply(local)
-        out += float(in_plane_polygon(points, floor).mean()) < INSIDE_SHARE
+        out += float(is_in_plane_polygon(points, floor).mean()) < INSIDE_SHARE
     return out / len(scene.objects)
 
 

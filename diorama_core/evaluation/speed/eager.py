@@ -32,7 +32,7 @@ def step_seconds(way: str, count: int, seed: int) -> float | None:
         return cost_of(partial(_slope_of_all, problem, "cpu"), 3).seconds
     if way == EAGER:
         return cost_of(partial(_slope_pair_by_pair, problem), 1).seconds
-    return _on_gpu(partial(_slope_of_all, problem, "cuda")) if torch.cuda.is_available() else None
+    return _gpu_seconds(partial(_slope_of_all, problem, "cuda")) if torch.cuda.is_available() else None
 
 
 def _ours(problem: Problem) -> float:
@@ -64,7 +64,7 @@ def _slope_pair_by_pair(problem: Problem) -> Float[Tensor, "n 3"]:
     return torch.autograd.grad(total, p)[0]
 
 
-def _on_gpu(work: Callable[[], object], repeats: int = 20) -> float:
+def _gpu_seconds(work: Callable[[], object], repeats: int = 20) -> float:
     work()
     torch.cuda.synchronize()
     begun = time.perf_counter()

@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from diorama_core.arrangement.surfaces import RestingSurface, plane_surface
-from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.geometry.sat import PairAxes, PosedBodies, pair_axes, place_bodies
 from diorama_core.layout.escape import exits, ring
 from diorama_core.layout.feasible.quadratic import HARD, SOFT, least_distance
@@ -134,7 +134,7 @@ def _wall_rows(
     starts = np.searchsorted(bodies.owner, np.arange(problem.count))
     radius = 0.5 * np.linalg.norm(problem.shape_size * structure.scale, axis=1)
     settled = replace(problem, R=structure.R, p=structure.p, scale=structure.scale)
-    in_room = in_polygon(structure.p[:, :2], problem.floor_outline)
+    in_room = is_in_polygon(structure.p[:, :2], problem.floor_outline)
     for w, wall in enumerate(problem.walls if problem.count else ()):
         if not wall.seen:
             continue
@@ -271,7 +271,7 @@ def _near_parts(program: Program, w: Float[np.ndarray, "n 3"]) -> list[tuple[int
     return pairs
 
 
-def _between(
+def _pair_axes(
     program: Program, i: int, j: int, offset: Float[np.ndarray, "3"], directions: Float[np.ndarray, "d 3"]
 ) -> list[PairAxes]:
     """The watched pairs of parts of two objects, with the axes along which they are deepest apart or least deep, and
@@ -314,7 +314,7 @@ def _choose_way(program: Program, y: Float[np.ndarray, " v"], i: int, j: int) ->
     if not len(directions):
         return
     now = lever @ y
-    blocks = _between(program, i, j, now, directions)
+    blocks = _pair_axes(program, i, j, now, directions)
     offsets = [np.tile(now, (len(block.a), 1)) for block in blocks]
     ones = [np.ones(len(block.a)) for block in blocks]
     far = exits(blocks, offsets, ones, directions, program.problem.settings.apart_m)

@@ -56,13 +56,13 @@ def settle(
     n = surface.normal
     walk.R[i] = aligned(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
     u, v = plane_axes(n)
-    _before_walls(problem, walk, i)
+    _shorten_before_walls(problem, walk, i)
     if observations is not None:
         observations = observations.no_larger(i, np.where(walk.scale[i] < problem.scale[i], walk.scale[i], np.inf))
     grown = 1.0 if eye is None else _from_the_eye(problem, walk, i, surface, eye)
     if observations is not None and observations.measured[i]:
         _reach_support(problem, walk, i, surface)
-    _on_support(problem, walk, i, surface, None if ray is None else ray[i])
+    _set_on_support(problem, walk, i, surface, None if ray is None else ray[i])
     grounded = problem.grounded[i] and is_wall_like(surface)
     walk.basis[i] = np.column_stack([u, np.zeros(3) if grounded else v])
     _against_walls(problem, walk, i, against)
@@ -74,18 +74,18 @@ def settle(
         walk.p[i], walk.scale[i] = observations.fitted(
             i, walk.R[i], walk.p[i], walk.scale[i], walk.basis[i], pinned, grown
         )
-    m, slack = _within_support(problem, walk, i, surface)
+    m, slack = _fit_on_support(problem, walk, i, surface)
     if (slack < 0).any():
-        _onto_support(problem, walk, i, surface, slack, m)
+        _move_onto_support(problem, walk, i, surface, slack, m)
         if observations is not None:
             _seen_from_the_edge(problem, walk, i, surface, observations, pinned, eye)
-        m, slack = _within_support(problem, walk, i, surface)
+        m, slack = _fit_on_support(problem, walk, i, surface)
     walk.owners += [i] * len(m)
     walk.normals += list(m)
     walk.slacks += [max(float(s), 0.0) for s in slack]
 
 
-def _before_walls(problem: Problem, walk: Walk, i: int) -> None:
+def _shorten_before_walls(problem: Problem, walk: Walk, i: int) -> None:
     """Shorten an object that reaches through a wall from behind: its front was seen where it is, its back was not.
 
     Where what it holds up was seen before its front, the object comes forward so far instead.
@@ -114,12 +114,12 @@ def _overhang(problem: Problem, i: int, outward: np.ndarray) -> float:
     return max(reach) - reach[0]
 
 
-def _within_support(
+def _fit_on_support(
     problem: Problem, walk: Walk, i: int, surface: RestingSurface
 ) -> tuple[Float[np.ndarray, "k 3"], Float[np.ndarray, " k"]]:
-    """Outward normals of the support's sides that the object's free coordinates can meet, and how far each is.
+    """Fit the object on its support; gives outward normals of the sides that its free coordinates can meet.
 
-    The object is shrunk where it does not fit and set on its surface first.
+    The object is shrunk where it does not fit and set on its surface first. How far each side is, is given with them.
     """
     reach = _fit(problem, walk, i, surface, surface.outward, surface.offset)
     walk.p[i] = walk.p[i] + _lift(problem, walk, i, surface) * surface.normal
@@ -147,13 +147,13 @@ def sides(
     return m[mobile], slack[mobile]
 
 
-def _onto_support(
+def _move_onto_support(
     problem: Problem, walk: Walk, i: int, surface: RestingSurface, slack: np.ndarray, m: np.ndarray
 ) -> None:
-    """The shortest way onto the surface: with the coordinates that a wall leaves where that is about as short."""
+    """Move the shortest way onto the surface: with the coordinates that a wall leaves where that is about as short."""
     plane = np.column_stack(plane_axes(surface.normal))
-    shortest = plane @ _into(m @ plane, slack)
-    along = walk.basis[i] @ _into(m @ walk.basis[i], slack)
+    shortest = plane @ _shortest_move(m @ plane, slack)
+    along = walk.basis[i] @ _shortest_move(m @ walk.basis[i], slack)
     detour = np.linalg.norm(along) > problem.settings.max_detour * np.linalg.norm(shortest) and not problem.grounded[i]
     walk.p[i] = walk.p[i] + (shortest if detour else along)
 
@@ -168,7 +168,7 @@ def _seen_from_the_edge(
     eye: np.ndarray | None,
 ) -> None:
     """Move an object that had to come back onto its support along the side that it came to, until it is seen best."""
-    m, slack = _within_support(problem, walk, i, surface)
+    m, slack = _fit_on_support(problem, walk, i, surface)
     reached = m[int(np.argmin(slack))] if len(m) else np.zeros(3)
     side = cross(surface.normal, reached)
     length = float(np.linalg.norm(side))
@@ -179,9 +179,9 @@ def _seen_from_the_edge(
     basis = np.column_stack([side / length, np.zeros(3)])
     start = walk.p[i].copy(), walk.scale[i].copy()
     walk.p[i], walk.scale[i] = observations.fitted(i, walk.R[i], *start, basis, pinned, grown)
-    m, slack = _within_support(problem, walk, i, surface)
+    m, slack = _fit_on_support(problem, walk, i, surface)
     if (slack < 0).any():
-        _onto_support(problem, walk, i, surface, slack, m)
+        _move_onto_support(problem, walk, i, surface, slack, m)
 
 
 def _nearness(p: np.ndarray, observed: np.ndarray, eye: np.ndarray, most: float) -> float:
@@ -223,7 +223,7 @@ def _reach_support(problem: Problem, walk: Walk, i: int, surface: RestingSurface
     walk.p[i] = walk.p[i] - 0.5 * (factor - 1.0) * extent * surface.normal
 
 
-def _on_support(problem: Problem, walk: Walk, i: int, surface: RestingSurface, ray: np.ndarray | None) -> None:
+def _set_on_support(problem: Problem, walk: Walk, i: int, surface: RestingSurface, ray: np.ndarray | None) -> None:
     """Move the object onto its surface: along the normal, or along its viewing ray where that meets it decently."""
     lift = _lift(problem, walk, i, surface)
     shift = lift * surface.normal
@@ -306,7 +306,7 @@ def _reach(problem: Problem, walk: Walk, i: int, m: np.ndarray) -> np.ndarray:
     return reach_of(problem.footing[i], walk.R[i], walk.scale[i], m)
 
 
-def _into(rows: np.ndarray, slack: np.ndarray) -> Float[np.ndarray, "2"]:
+def _shortest_move(rows: np.ndarray, slack: np.ndarray) -> Float[np.ndarray, "2"]:
     """The shortest move r with rows r <= slack."""
     if not len(rows) or (slack >= 0).all():
         return np.zeros(2)

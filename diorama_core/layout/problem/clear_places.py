@@ -66,7 +66,7 @@ def clear_of_places(
         carries: whether people put things on its places rather than sit on them.
     """
     places = [(_inscribed(np.asarray(s.polygon)[:, :2]), s.height_m, s.height_m + s.clearance_m) for s in surfaces]
-    if not any(_reaches_over(part, _above(place, SETTINGS.rises_m[0])) for part in parts for place in places):
+    if not any(_reaches_over(part, _room_above(place, SETTINGS.rises_m[0])) for part in parts for place in places):
         return parts
     rises = (*SETTINGS.rises_m, SETTINGS.around_feet_m) if carries else SETTINGS.rises_m
     surface = mesh()
@@ -74,10 +74,10 @@ def clear_of_places(
         [surface.vertices, trimesh.sample.sample_surface(surface, SETTINGS.samples, seed=SETTINGS.seed)[0]]
     )
     for place in places:
-        rooms = (_above(place, rise) for rise in rises)
-        free = next((room for room in rooms if not _within(points, *room).any()), None)
+        rooms = (_room_above(place, rise) for rise in rises)
+        free = next((room for room in rooms if not _are_in_room(points, *room).any()), None)
         if free is not None and not _is_enclosed(free, surface):
-            whole, flat = (place[0], place[1], free[2]), _above(place, SETTINGS.rises_m[0])
+            whole, flat = (place[0], place[1], free[2]), _room_above(place, SETTINGS.rises_m[0])
             parts = tuple(piece for p in parts for piece in (_cut(p, whole) if _reaches_over(p, flat) else [p]))
     return parts
 
@@ -100,16 +100,16 @@ def _sides(outline: Float[np.ndarray, "k 2"]) -> tuple[Float[np.ndarray, "s 2"],
     return outward, (outward * outline[long]).sum(axis=1)
 
 
-def _above(place: Room, rise_m: float) -> Room:
+def _room_above(place: Room, rise_m: float) -> Room:
     """The room over a place, above what rises from it so far."""
     outline, level, top = place
     return outline, level + rise_m, top - SETTINGS.rises_m[1]
 
 
-def _within(
+def _are_in_room(
     points: Float[np.ndarray, "n 3"], outline: Float[np.ndarray, "k 2"], low: float, high: float
 ) -> Bool[np.ndarray, " n"]:
-    """Which points are in a room."""
+    """True for points in a room."""
     outward, offset = _sides(outline)
     beside = (points[:, :2] @ outward.T - offset).max(axis=1)
     return np.asarray((beside < -SETTINGS.margin_m) & (points[:, 2] > low) & (points[:, 2] < high))

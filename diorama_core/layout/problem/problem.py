@@ -28,7 +28,7 @@ from diorama_core.arrangement.surfaces import (
     wall_faces,
 )
 from diorama_core.geometry.convex import ConvexPart
-from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.geometry.sat import PaddedParts, pack_parts
 from diorama_core.geometry.vectors import unique_rows
 from diorama_core.layout.problem.parts import parts_of_shape
@@ -160,7 +160,7 @@ class Problem:
         behind = points[points @ wall.normal < wall.offset - self.settings.behind_m]
         surface = plane_surface(wall)
         beside = (behind @ surface.outward.T - surface.offset).max(axis=1) > -self.settings.behind_m
-        return len(behind) > 0 and bool((beside & in_polygon(behind[:, :2], self.floor_outline)).all())
+        return len(behind) > 0 and bool((beside & is_in_polygon(behind[:, :2], self.floor_outline)).all())
 
     def poses(
         self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]

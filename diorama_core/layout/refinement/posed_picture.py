@@ -103,7 +103,7 @@ class PosedPicture:
         here = self.depth_m[i][window]
         moved_px, moved_m, nearest_m = self._farthest_move(i, poses)
         alone = np.abs(rest.depth_m - np.where(np.isfinite(here), here, 0.0)) > self.settings.slanted * moved_m
-        open_to_change = ~(alone & _inside(np.isfinite(here), moved_px)) & (rest.depth_m > nearest_m)
+        open_to_change = ~(alone & _erode(np.isfinite(here), moved_px)) & (rest.depth_m > nearest_m)
         depth = np.repeat(here[None], len(poses), axis=0)
         rays = self.grid.rays[window][open_to_change]
         depth[1:, open_to_change] = _cast(self.grid, self.casters[i], rays, poses[1:])
@@ -165,7 +165,7 @@ def _cast(
     return caster.cast(grid.camera.position, rays, poses).depth_m.astype(np.float32)
 
 
-def _inside(covered: Bool[np.ndarray, "h w"], margin: float) -> Bool[np.ndarray, "h w"]:
+def _erode(covered: Bool[np.ndarray, "h w"], margin: float) -> Bool[np.ndarray, "h w"]:
     """Pixels so far inside a mask that they remain in it when it moves by less than the margin."""
     reach = int(np.ceil(margin)) + 1 if np.isfinite(margin) else max(covered.shape)
     if 2 * reach >= min(covered.shape):

@@ -72,7 +72,7 @@ class MaskRefinement:
         none = np.zeros(4)
         boxes = np.array([none if o is None else o.box for o in detected_objects], dtype=np.float64)
         trust = np.array([0.0 if o is None else _trust(o, self.settings.outlined) for o in detected_objects])
-        sized = _in_sets(observed, problem.ids)
+        sized = _belong_to_sets(observed, problem.ids)
         poses = Search(problem, picture, priors, boxes, trust, sized, self.settings).poses(progress)
         as_observed = replace(
             problem,
@@ -101,8 +101,8 @@ def _trust(detected: DetectedObject, outlined: float) -> float:
     return 1.0 if detected.mask_confidence == 1.0 else outlined * detected.mask_confidence
 
 
-def _in_sets(observed: Scene, ids: Sequence[str]) -> list[bool]:
-    """Whether each object is exactly as large as another of its shape: things of one set stay alike."""
+def _belong_to_sets(observed: Scene, ids: Sequence[str]) -> list[bool]:
+    """True for objects exactly as large as another of their shape: objects of a set stay alike."""
     sizes = {o.id: (o.shape_id, *o.pose.scale.tolist()) for o in observed.objects}
     alike = Counter(sizes.values())
     return [alike[sizes[name]] > 1 for name in ids]

@@ -13,7 +13,7 @@ from diorama_app.projects.folder_photos import photos_of
 from diorama_app.projects.options import BuildOptions, PhotoFiles
 from diorama_app.projects.posed_build import build_posed_photos, build_sphere_photo
 from diorama_core.errors import InputError
-from diorama_core.geometry.planes import in_polygon
+from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.multiview.posed_photos import PosedPhoto, read_poses
@@ -138,7 +138,7 @@ def test_a_360_degree_photo_becomes_one_closed_room(tmp_path: Path, capsys) -> N
     floor = scene.architecture.floor
     assert floor is not None
     assert len(scene.architecture.by_role("wall")) == 4
-    assert in_polygon(scene.objects[0].pose.position[None, :2], floor.polygon[:, :2])[0]
+    assert is_in_polygon(scene.objects[0].pose.position[None, :2], floor.polygon[:, :2])[0]
     assert np.ptp(floor.polygon[:, :2], axis=0) == pytest.approx(height_m * np.ptp(BOX, axis=0), rel=0.12)
 
 

@@ -11,11 +11,11 @@ from diorama_core.arrangement.support_hypotheses import MEASURED, REASONED, Obse
 from diorama_core.artefacts import Cuboid, Inputs, ObjectGeometry, Photo
 from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.substitution import (
-    along,
     geometry_with,
     heading_change,
     parse_substitutes,
     scaled,
+    size_along_axes,
 )
 from diorama_core.pipeline.scene_steps import position_noise
 from diorama_core.provenance import ScaleSource
@@ -118,8 +118,8 @@ def test_true_places_count_as_measured_in_later_stages(name: str, noise: Observa
 
 def test_extents_follow_the_nearest_axes() -> None:
     size = np.array([1.0, 2.0, 3.0])
-    assert np.allclose(along(size, np.eye(3), yaw_rotation(0.3)), size)
-    assert np.allclose(along(size, np.eye(3), yaw_rotation(1.3)), [2.0, 1.0, 3.0])
+    assert np.allclose(size_along_axes(size, np.eye(3), yaw_rotation(0.3)), size)
+    assert np.allclose(size_along_axes(size, np.eye(3), yaw_rotation(1.3)), [2.0, 1.0, 3.0])
 
 
 def test_rows_are_read_and_wrong_names_are_said() -> None:
