@@ -7,7 +7,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -203,6 +203,7 @@ COMPOUNDS: tuple[BoxShape, ...] = (
 )  # fmt: skip
 
 
+@cache
 def box_library() -> BoxLibrary:
     """The library that the generated rooms draw from."""
     return BoxLibrary(COMPOUNDS)

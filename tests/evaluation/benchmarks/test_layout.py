@@ -7,10 +7,15 @@ import pytest
 from diorama_core.errors import Cancelled
 from diorama_core.evaluation.benchmarks import layout
 from diorama_core.progress import CancelToken, Progress
+from diorama_core.synthesis.layout_rooms import GeneratedRoom, Noise, generate_room
 
 
 def test_tables_are_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    def small_room(seed: int, count: int, noise: Noise | None = None) -> GeneratedRoom:
+        return generate_room(seed, min(count, 10), noise or Noise())
+
     monkeypatch.setattr(layout, "ROOM", 5)
+    monkeypatch.setattr(layout, "generate_room", small_room)
     result = layout.run(scenes=1, seed=3)
     feasible = result.ablation[-1]
     assert feasible.name == "feasible"

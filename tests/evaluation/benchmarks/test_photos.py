@@ -13,6 +13,7 @@ from diorama_app.cli import main
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import read_annotations
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
+from diorama_core.evaluation.reports import tables
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.synthesis import furnished_room, render_truth, sample_cameras
 
@@ -45,8 +46,9 @@ def made(tmp_path_factory):
     return path, folder, len(objects)
 
 
-def test_photos_are_measured_and_failures_do_not_stop_the_others(made, capsys, caplog, tmp_path):
+def test_photos_are_measured_and_failures_do_not_stop_the_others(made, capsys, caplog, tmp_path, monkeypatch):
     """Once perturbed, in folds and with a sheet, then again from the JSON."""
+    monkeypatch.setattr(tables, "GROUP_DRAWS", 20)
     path, folder, count = made
     words = ["bench", "photos", str(path), "--photos", str(folder), "--json", str(tmp_path / "out.json")]
     words += ["--perturbed", "dropped", "--folds", "2", "--sheet", str(tmp_path / "sheet.jpg")]
