@@ -139,10 +139,11 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         patch.setattr(os, "fsync", lambda descriptor: None)
         patch.setattr(catalogue, "built_once", shared_solids.built_once)
         kept_readers.keep(patch)
-        patch.setenv("DIORAMA_CACHE", str(derived_files(tmp_path_factory)))
+        derived = derived_files(tmp_path_factory)
+        patch.setenv("DIORAMA_CACHE", str(derived))
         patch.setenv("DIORAMA_LIBRARIES", str(tmp_path_factory.mktemp("libraries")))
-        if "PYTEST_XDIST_WORKER" in os.environ:
-            patch.setenv(made_once.FOLDER, str(tmp_path_factory.getbasetemp().parent / "made"))
+        if "DIORAMA_TEST_CACHE" in os.environ or "PYTEST_XDIST_WORKER" in os.environ:
+            patch.setenv(made_once.FOLDER, str(derived / "made"))
         yield
         kept_readers.end_all()
 

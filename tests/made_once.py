@@ -1,4 +1,6 @@
-"""What several test files need and takes seconds to make: one process of a run makes it, the others read it."""
+"""What several test files need and takes seconds to make: one process makes it, the others and later runs of the same
+code read it.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,7 @@ from typing import TypeVar
 from filelock import FileLock
 
 FOLDER = "DIORAMA_TESTS_MADE"
-"""Names the folder that the processes of one run share; without it everybody makes his own."""
+"""Names the folder that processes share; without it everybody makes his own."""
 
 T = TypeVar("T")
 
