@@ -86,7 +86,8 @@ def found_chain(scorer: ChainScorer, settings: RoomSearchSettings) -> Chain:
     walls = candidate_walls(scorer.cues, settings)
     above_camera_m = float(scorer.cues.camera.position[2]) + settings.above_camera_m
     begun = (best_chain(scorer, walls, max(height, above_camera_m)) for height in settings.first_ceilings_m)
-    chains = [best_chain(scorer, walls, best_ceiling(scorer, chain, CEILINGS_M)) for chain in begun]
+    ceilings_m = dict.fromkeys(best_ceiling(scorer, chain, CEILINGS_M) for chain in begun)
+    chains = [best_chain(scorer, walls, ceiling_m) for ceiling_m in ceilings_m]
     return refined(scorer, min(chains, key=lambda chain: chain.cost), CEILINGS_M)
 
 
