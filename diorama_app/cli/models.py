@@ -118,13 +118,13 @@ def _try(store: ModelStore, network_ids: Sequence[str]) -> None:
 
 def _members(what: str) -> tuple[Network, ...]:
     """The networks of a set, in half precision where a card calculates with it, or the one that is named."""
-    from diorama_core.models.manifest import in_half, network, networks_of
+    from diorama_core.models.manifest import half_precision_networks, network, networks_of
     from diorama_core.models.network import TIERS
     from diorama_core.models.runtime import calculates_in_half
 
     if what not in TIERS:
         return (network(what),)
-    return in_half(networks_of(what)) if calculates_in_half() else networks_of(what)
+    return half_precision_networks(networks_of(what)) if calculates_in_half() else networks_of(what)
 
 
 def _asker(yes: bool) -> Any:

@@ -23,7 +23,7 @@ from diorama_core.multiview.camera_changes import quarters_of, upright_camera
 from diorama_core.multiview.found_poses import UnposedPhoto, find_poses
 from diorama_core.multiview.lens import straightened
 from diorama_core.multiview.posed_photos import PosedPhoto, Poses
-from diorama_core.multiview.rooms import JoinedRoom, PosedInputs, build_room, in_room
+from diorama_core.multiview.rooms import JoinedRoom, PosedInputs, align_to_room, build_room
 from diorama_core.multiview.sphere_scene import build_sphere
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.pipeline.presets import stages_for
@@ -105,7 +105,7 @@ def build_posed_photos(
 
     project = Project.create(output)
     with ProjectLock(project.folder, "diorama build"):
-        placed, _ = in_room(
+        placed, _ = align_to_room(
             [row[2] for row in read], choose, metric=poses.metric, up=poses.up, progress=progress.part(0.0, 0.15)
         )
         layout = recipe(options.recipe, library, depth_measured=True)

@@ -63,7 +63,7 @@ class Moge2:
             seen = recovered(out["points"][0], out["normal"][0], out["mask"][0], float(np.ravel(out[scale])[0]), known)
         except UnavailableError as error:
             raise NetworkError(self.graph, str(error)) from error
-        return at_size(seen, height, width)
+        return resize_depth(seen, height, width)
 
 
 def recovered(
@@ -96,7 +96,7 @@ def recovered(
     depth = np.where(valid & (depth > 0), depth, 0.0).astype(np.float32)
     if not depth.any():
         raise UnavailableError("the depth network's scale is no length; use --profile embedded")
-    return SeenDepth(depth, _toward_camera(normals, depth, k), k)
+    return SeenDepth(depth, _orient_normals(normals, depth, k), k)
 
 
 def focal_and_shift(
@@ -173,7 +173,7 @@ class Metric3d:
             raise NetworkError(self.graph, "the depth network sees no geometry in this picture; use --profile embedded")
         small = k.scaled(inner_w, inner_h)
         depth32 = depth.astype(np.float32)
-        return at_size(SeenDepth(depth32, _toward_camera(normals, depth32, small), small), height, width, k)
+        return resize_depth(SeenDepth(depth32, _orient_normals(normals, depth32, small), small), height, width, k)
 
     def pixels(
         self, rgb: UInt8[np.ndarray, "h w 3"]
@@ -193,10 +193,10 @@ def _channels_last(normals: np.ndarray) -> np.ndarray:
     return normals if normals.shape[-1] in (3, 4) else normals.transpose(1, 2, 0)
 
 
-def _toward_camera(
+def _orient_normals(
     normals: Float[np.ndarray, "h w c"], depth_m: Float32[np.ndarray, "h w"], k: Intrinsics
 ) -> Float32[np.ndarray, "h w 3"]:
-    """Unit length, toward the camera; zero where depth is unknown."""
+    """Unit normals turned toward the camera; zero where depth is unknown."""
     n = normals[..., :3].astype(np.float64)
     length = np.linalg.norm(n, axis=-1, keepdims=True)
     n = np.where(length > 1e-6, n / np.maximum(length, 1e-6), 0.0)
@@ -207,8 +207,8 @@ def _toward_camera(
     return np.where(depth_m[..., None] > 0, n, 0.0).astype(np.float32)
 
 
-def at_size(seen: SeenDepth, height: int, width: int, intrinsics: Intrinsics | None = None) -> SeenDepth:
-    """The depth at the picture's own size: nearest pixels, since depth must not be averaged across edges.
+def resize_depth(seen: SeenDepth, height: int, width: int, intrinsics: Intrinsics | None = None) -> SeenDepth:
+    """Depth resized to the picture's own size: nearest pixels, since depth must not be averaged across edges.
 
     Args:
         seen: The network's depth.
@@ -262,7 +262,7 @@ class DepthAnything3:
         if not (depth > 0).any():
             raise NetworkError(self.graph, "the depth network sees no geometry in this picture; use --profile embedded")
         normals = smooth_normals_camera(depth, square).astype(np.float32)
-        return at_size(SeenDepth(depth, normals, square), height, width, k)
+        return resize_depth(SeenDepth(depth, normals, square), height, width, k)
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"], side: int = SIDE) -> Float32[np.ndarray, "1 3 side side"]:
         """Stretched to the square, ImageNet statistics."""

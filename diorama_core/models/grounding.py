@@ -86,7 +86,9 @@ class GroundingDino:
             # Tokens beyond the prompt have the logit of minus infinity.
             out = session.run(feeds, {"logits": (1, None, TOKENS)}, gaps=True, progress=progress)
             session.check("pred_boxes", out.get("pred_boxes"), (1, out["logits"].shape[1], 4))
-            detections.append(_above(out["logits"][0], out["pred_boxes"][0], prompt, threshold, rgb.shape[:2]))
+            detections.append(
+                _likely_detections(out["logits"][0], out["pred_boxes"][0], prompt, threshold, rgb.shape[:2])
+            )
         if not detections:
             return Detections(np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int))
         every = joined(detections)
@@ -127,7 +129,7 @@ class GroundingDino:
         return (*made, Prompt((*ids, end), tuple(prompts), tuple(spans))) if prompts else tuple(made)
 
 
-def _above(
+def _likely_detections(
     logits: Float32[np.ndarray, "q t"],
     boxes: Float32[np.ndarray, "q 4"],
     prompt: Prompt,

@@ -39,7 +39,7 @@ def network(network_id: str) -> Network:
     raise InputError(f"there is no network {network_id!r}; `diorama models list` names them")
 
 
-def in_half(networks: tuple[Network, ...]) -> tuple[Network, ...]:
+def half_precision_networks(networks: tuple[Network, ...]) -> tuple[Network, ...]:
     """The networks in half precision, where such files are published."""
     halves = {n.half_of: n for n in NETWORKS if n.half_of}
     return tuple(halves.get(n.id, n) for n in networks)

@@ -73,7 +73,7 @@ class BoxOutliner:
             windows = np.stack([window(rgb, box) for box in some])
             both = self._logits(windows) + self._logits(np.ascontiguousarray(windows[..., ::-1]))[..., ::-1]
             shares = expit(both / 2).astype(np.float32)
-            outlines += [in_photo(share, box, rgb.shape[:2]) for share, box in zip(shares, some, strict=True)]
+            outlines += [warp_to_photo(share, box, rgb.shape[:2]) for share, box in zip(shares, some, strict=True)]
         return outlines
 
     def _logits(self, windows: Float32[np.ndarray, "b 4 s s"]) -> Float32[np.ndarray, "b s s"]:
@@ -119,7 +119,9 @@ def resampled(image: Shaped[np.ndarray, "h w *c"], box: Box) -> Shaped[np.ndarra
     return np.asarray(cv2.warpAffine(part, to_photo, (SIDE, SIDE), flags=how, borderMode=cv2.BORDER_CONSTANT))
 
 
-def in_photo(share: Float32[np.ndarray, "s s"], box: Box, photo_shape: tuple[int, int]) -> Float32[np.ndarray, "h2 w2"]:
+def warp_to_photo(
+    share: Float32[np.ndarray, "s s"], box: Box, photo_shape: tuple[int, int]
+) -> Float32[np.ndarray, "h2 w2"]:
     """A window's numbers at the pixels of its box (`pixels_of`), interpolated."""
     left, top, per_x, per_y = _grid(box)
     rows, columns = pixels_of(box, photo_shape)

@@ -56,10 +56,10 @@ def pull(
             raise InputError(f"{network.title} cannot be pulled: {how_to_get(network)}")
     _ask(store, [n for n in networks if store.missing(n)], accept)
     _check_space(store, wanted)
-    total = sum(_about(n, f) for n, f in wanted)
+    total = sum(_file_bytes(n, f) for n, f in wanted)
     done = 0
     for network, file in wanted:
-        size = _about(network, file)
+        size = _file_bytes(network, file)
         part = progress.part(min(done / total, 1.0), min((done + size) / total, 1.0))
         _fetch(store, network, file, part)
         done += size
@@ -80,14 +80,14 @@ def _ask(store: ModelStore, networks: Sequence[Network], accept: Accept) -> None
         raise _disk_error(store, error) from error
 
 
-def _about(network: Network, file: ModelFile) -> int:
+def _file_bytes(network: Network, file: ModelFile) -> int:
     if file.bytes is not None:
         return file.bytes
     return max(1, network.size_bytes // len(network.files))
 
 
 def _check_space(store: ModelStore, wanted: Sequence[tuple[Network, ModelFile]]) -> None:
-    needed = sum(_about(n, f) for n, f in wanted)
+    needed = sum(_file_bytes(n, f) for n, f in wanted)
     place = store.folder
     while not place.exists() and place != place.parent:
         place = place.parent
@@ -107,7 +107,7 @@ def _fetch(store: ModelStore, network: Network, file: ModelFile, progress: Progr
     heard = _Heard(progress, name)
     with _one_line(store, network), _hub_told(heard):
         staging.mkdir(parents=True, exist_ok=True)
-        meter = _meter(heard, _about(network, file))
+        meter = _meter(heard, _file_bytes(network, file))
         revision = "" if network.url else _revision(store, network)
         arrived = _downloaded(network, file, revision, staging, meter)
         store.adopt(network, file, arrived, revision)

@@ -122,7 +122,7 @@ def with_photo(
     progress.report(0.35, "joining objects")
     if len(others) == 1:
         pairs = [(sightings[item.id][0][1], box) for box, item in claimed.items() if sightings[item.id]]
-        read, new_photo = _at_likeliest_distance(read, new_photo, others[0][2], pairs)
+        read, new_photo = _place_at_likeliest_distance(read, new_photo, others[0][2], pairs)
     photos = (*(photo for _, _, photo in others), new_photo)
     scene = _with_fitted(scene, {box: o for box, o in claimed.items() if o.id in movable}, sightings, photos, movable)
     shares = {
@@ -208,7 +208,7 @@ def _hangs(item: SceneObject, scene: Scene) -> bool:
     return hangs_on_wall(item.category) and (on_wall or item.category == "door")
 
 
-def _at_likeliest_distance(
+def _place_at_likeliest_distance(
     read: ReadPhoto, new_photo: RoomPhoto, known: RoomPhoto, pairs: Sequence[tuple[int, int]]
 ) -> tuple[ReadPhoto, RoomPhoto]:
     """The new photo so far from the only known one that the objects of both have the likeliest sizes and places.
@@ -225,7 +225,7 @@ def _at_likeliest_distance(
         return read, new_photo
     eye = known.boxes.camera.position
 
-    def at(factor: float) -> tuple[ReadPhoto, RoomPhoto]:
+    def place_at(factor: float) -> tuple[ReadPhoto, RoomPhoto]:
         T = read.posed.camera.T_world_camera.copy()
         T[:3, 3] = eye + factor * (T[:3, 3] - eye)
         camera = Camera(read.posed.camera.intrinsics, T)
@@ -236,7 +236,7 @@ def _at_likeliest_distance(
         costs = [fitted_track(((0, a), (1, b)), (known, photo)).cuboid.cost for a, b in pairs]
         return float(np.minimum(costs, SETTINGS.max_cost).sum())
 
-    tried = [at(float(f)) for f in DISTANCES]
+    tried = [place_at(float(f)) for f in DISTANCES]
     costs = [
         against(photo) + (np.log(f) / SETTINGS.distance_log_sigma) ** 2
         for f, (_, photo) in zip(DISTANCES, tried, strict=True)

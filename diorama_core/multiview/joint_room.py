@@ -222,14 +222,14 @@ def _evidence(
         floor = photo.architecture.floor
         if floor is None:
             continue
-        within, seen = is_in_polygon(grid, floor.polygon[:, :2]), _in_view(grid, photo.camera)
+        within, seen = is_in_polygon(grid, floor.polygon[:, :2]), _are_in_view(grid, photo.camera)
         near = np.exp(-np.linalg.norm(grid - photo.camera.position[:2], axis=1) / SETTINGS.range_m)
         says += np.where(within, np.where(seen, near, SETTINGS.beside_view * near), 0.0)
         for wall in photo.architecture.by_role("wall"):
             if wall.seen:
                 line = placed[id(wall)]
                 behind = grid @ line.normal < line.offset
-                hidden = behind & seen & _behind_piece(grid, photo.camera, wall)
+                hidden = behind & seen & _are_behind_piece(grid, photo.camera, wall)
                 says -= wall.confidence * (
                     np.where(hidden, SETTINGS.shadow, 0.0) + np.where(behind, SETTINGS.behind, 0.0)
                 )
@@ -240,8 +240,8 @@ def _evidence(
     return says
 
 
-def _behind_piece(grid: Float[np.ndarray, "n 2"], camera: Camera, wall: Plane) -> Bool[np.ndarray, "n"]:
-    """Which places lie in the directions of a wall."""
+def _are_behind_piece(grid: Float[np.ndarray, "n 2"], camera: Camera, wall: Plane) -> Bool[np.ndarray, "n"]:
+    """True for places in the directions of a wall."""
     eye, along = camera.position[:2], np.cross([0.0, 0.0, 1.0], wall.normal)[:2]
     reach = wall.polygon[:, :2] @ along
     away = (grid - eye) @ wall.normal[:2]
@@ -250,8 +250,8 @@ def _behind_piece(grid: Float[np.ndarray, "n 2"], camera: Camera, wall: Plane) -
     return np.asarray((met > reach.min()) & (met < reach.max()))
 
 
-def _in_view(grid: Float[np.ndarray, "n 2"], camera: Camera) -> Bool[np.ndarray, "n"]:
-    """Which places of the plan are between the left and the right side of the picture."""
+def _are_in_view(grid: Float[np.ndarray, "n 2"], camera: Camera) -> Bool[np.ndarray, "n"]:
+    """True for places of the plan between the left and the right side of the picture."""
     k = camera.intrinsics
     ahead = camera.T_world_camera[:2, 2] / max(float(np.linalg.norm(camera.T_world_camera[:2, 2])), 1e-9)
     right = np.array([ahead[1], -ahead[0]])

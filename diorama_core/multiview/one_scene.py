@@ -69,7 +69,7 @@ def filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
         turn = round((pose.yaw_rad - joint.yaw_rad) / (np.pi / 2))
         axes = [1, 0, 2] if turn % 2 else [0, 1, 2]
         shape = np.array(shape_size_m)
-        size = in_proportion(np.maximum(joint.size_m, 1e-3)[axes], np.array(joint.log_size_sigma)[axes], shape)
+        size = fuse_proportions(np.maximum(joint.size_m, 1e-3)[axes], np.array(joint.log_size_sigma)[axes], shape)
         R = yaw_rotation(joint.yaw_rad + turn * np.pi / 2)
         base = joint.centre[2] - joint.size_m[2] / 2
         return Pose(R, np.array([*joint.centre[:2], base + size[2] / 2]), size / shape)
@@ -93,7 +93,7 @@ def set_into_wall(item: SceneObject) -> SceneObject:
     return replace(item, pose=thinner(item.pose, item.shape_size_m), candidates=candidates)
 
 
-def in_proportion(
+def fuse_proportions(
     size_m: Float[np.ndarray, "3"], log_sigma: Float[np.ndarray, "3"], shape_size_m: Float[np.ndarray, "3"]
 ) -> Float[np.ndarray, "3"]:
     """Extents by a measurement and by the proportions of a shape, of unknown scale, each as sure as it is.

@@ -100,17 +100,17 @@ def _reader_of(path: Path, pictures: Sequence[Path]) -> Callable[[Path], Poses]:
         return lambda file: _nerfstudio(file, pictures)
     for name in ("transforms.json", "transforms_train.json"):
         if (path / name).is_file():
-            return partial(_in_folder, lambda file: _nerfstudio(file, pictures), path / name)
+            return partial(_read_folder, lambda file: _nerfstudio(file, pictures), path / name)
     for folder in (path, path / "sparse" / "0", path / "sparse"):
         for ending, reader in ((".bin", _colmap_binary), (".txt", _colmap_text)):
             if (folder / f"cameras{ending}").is_file() and (folder / f"images{ending}").is_file():
-                return partial(_in_folder, reader, folder)
+                return partial(_read_folder, reader, folder)
     if any(path.glob("frame_*.json")) or any(_polycam_files(path)):
         return _arkit
     raise InputError(f"{path}: there is no transforms.json, COLMAP model or folder of ARKit frames")
 
 
-def _in_folder(reader: Callable[[Path], Poses], folder: Path, path: Path) -> Poses:
+def _read_folder(reader: Callable[[Path], Poses], folder: Path, path: Path) -> Poses:
     return reader(folder)
 
 

@@ -99,7 +99,7 @@ def registered_camera(
         Cancelled: on request.
     """
     common = [
-        _on_surfaces(p.camera, pixels, depth_along)
+        _surface_points(p.camera, pixels, depth_along)
         for p, pixels in zip(known, common_points(new, [p.photo for p in known], progress), strict=True)
     ]
     height, width = new.rgb.shape[:2]
@@ -120,7 +120,7 @@ def registered_camera(
     return camera
 
 
-def _on_surfaces(camera: Camera, pixels: Float[np.ndarray, "n 4"], depth_along: DepthAlong) -> CommonPoints:
+def _surface_points(camera: Camera, pixels: Float[np.ndarray, "n 4"], depth_along: DepthAlong) -> CommonPoints:
     depth = depth_along(camera, pixels[:, :2])
     hit = np.isfinite(depth) & (depth > 0)
     points = camera.position + depth[hit, None] * camera.rays(pixels[hit, :2])

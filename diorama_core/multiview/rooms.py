@@ -71,7 +71,7 @@ class PosedInputs:
     camera: Camera
 
 
-def in_room(
+def align_to_room(
     photos: Sequence[PosedInputs],
     choose: Callable[[Inputs], Stages],
     *,

@@ -361,12 +361,12 @@ def _starts(walls: tuple[_Wall, ...]) -> Float[np.ndarray, "w"]:
         if wall.jumps:
             starts.append(wall.begins)
             continue
-        a, b = (np.exp(w.log_distance) * _towards(w.axis) for w in (wall, before))
+        a, b = (np.exp(w.log_distance) * _axis_direction(w.axis) for w in (wall, before))
         starts.append(float(np.arctan2(*(a + b)[::-1])))
     return np.array(starts)
 
 
-def _towards(axis: int) -> Float[np.ndarray, "2"]:
+def _axis_direction(axis: int) -> Float[np.ndarray, "2"]:
     return np.rint([np.cos(axis * QUARTER), np.sin(axis * QUARTER)])
 
 
@@ -431,9 +431,9 @@ def _outlined(edges: _Edges, walls: tuple[_Wall, ...], log_height: float) -> Sph
         support /= np.maximum(np.bincount(seen[1], minlength=len(walls)), 1)
     corners, sure = [], []
     for index, (wall, before) in enumerate(zip(walls, (walls[-1], *walls[:-1]), strict=True)):
-        u = _towards(wall.axis)
+        u = _axis_direction(wall.axis)
         if not wall.jumps:
-            corners.append(np.exp(wall.log_distance) * u + np.exp(before.log_distance) * _towards(before.axis))
+            corners.append(np.exp(wall.log_distance) * u + np.exp(before.log_distance) * _axis_direction(before.axis))
             sure.append(support[index])
             continue
         ray = np.array([np.cos(starts[index]), np.sin(starts[index])])

@@ -45,7 +45,7 @@ from diorama_core.multiview.sphere_views import (
     drawn_on_sphere,
     found_in_views,
     marked_views,
-    on_picture,
+    picture_boxes,
     sphere_views,
     view_photo,
 )
@@ -103,7 +103,7 @@ class SphereScene:
         T[:3, :3], T[:3, 3] = self.R_room_sphere, self.views[0].camera.position
         known = {o.id: o for o in self.room.scene.objects}
         things = [_named(thing, known[name]) if name in known else thing for thing, name in self.things]
-        found = on_picture(things, (photo.width, photo.height), self.R_room_sphere)
+        found = picture_boxes(things, (photo.width, photo.height), self.R_room_sphere)
         whole = FurtherPhoto(Path(photo.name).stem, replace(inputs, boxes=inputs.boxes or found), T_world_sphere=T)
         views = zip(self.names[1:], self.views[1:], self.room.seen[1:], strict=True)
         return (whole, *(FurtherPhoto(Path(name).stem, v.inputs, v.camera, seen) for name, v, seen in views))
@@ -143,7 +143,7 @@ def build_sphere(
     if not boxes:
         things = _found(pictures, choose, progress.part(0.03, 0.12))
     progress.report(0.12, "looking for the room's borders all round")
-    border = room_on_sphere(sampled(photo.rgb, directions(LEVEL_WIDTH_PX) @ R), in_the_way(things))
+    border = room_on_sphere(sampled(photo.rgb, directions(LEVEL_WIDTH_PX) @ R), occluders(things))
     read, sightings, height_m = _read(pictures, things, border, choose, progress.part(0.15, 0.3), camera_height_m)
     room_photos = [said_alone(r) for r in read]
     shown = [(thing, seen) for thing, seen in zip(things, sightings, strict=True) if seen]
@@ -169,7 +169,7 @@ def _named(thing: SphereBox, item: SceneObject) -> SphereBox:
     return replace(thing, labelled=replace(thing.labelled, label=item.label, category=item.category, guessed=True))
 
 
-def in_the_way(things: Sequence[SphereBox]) -> tuple[SphereThing, ...]:
+def occluders(things: Sequence[SphereBox]) -> tuple[SphereThing, ...]:
     """Extents that hide the room's borders; of what hangs on a wall, which ends at them, only the middle."""
     hiding = []
     for thing in things:
@@ -226,7 +226,7 @@ def _read(
     place = {index: number for number, index in enumerate(order)}
     shown = tuple(tuple((place[view], box) for view, box in seen) for seen in sightings)
     height_m = camera_height_m or _height(read, shown, room)
-    return [_at_height(r, height_m) for r in read], shown, height_m
+    return [_set_camera_height(r, height_m) for r in read], shown, height_m
 
 
 def _height(read: Sequence[ReadPhoto], sightings: Sequence[tuple[tuple[int, int], ...]], room: SphereRoom) -> float:
@@ -241,7 +241,7 @@ def _height(read: Sequence[ReadPhoto], sightings: Sequence[tuple[tuple[int, int]
     return scan_heights_together(pictures, cost).height_m
 
 
-def _at_height(read: ReadPhoto, height_m: float) -> ReadPhoto:
+def _set_camera_height(read: ReadPhoto, height_m: float) -> ReadPhoto:
     T = read.posed.camera.T_world_camera.copy()
     T[2, 3] = height_m
     return replace(read, posed=replace(read.posed, camera=replace(read.posed.camera, T_world_camera=T)))

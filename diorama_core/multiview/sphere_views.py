@@ -108,7 +108,7 @@ def _across_seam(boxes: Sequence[LabelledBox], width: int) -> tuple[LabelledBox,
     return tuple(left)
 
 
-def on_picture(
+def picture_boxes(
     things: Sequence[SphereBox], size: tuple[int, int], R_room_sphere: Float[np.ndarray, "3 3"]
 ) -> tuple[LabelledBox, ...]:
     """Boxes of an equirectangular picture around things, two for one that goes on beyond its seam.

@@ -60,7 +60,7 @@ class Illuminant:
 
     def partly(self, share: float) -> Illuminant:
         """A light between white and this one: that share of its cast, as exposures go (in logarithms)."""
-        return _of_chromaticity(share * _chromaticity(np.array(self.rgb)))
+        return _from_chromaticity(share * _chromaticity(np.array(self.rgb)))
 
     def balanced(self, picture: UInt8[np.ndarray, "h w 3"]) -> UInt8[np.ndarray, "h w 3"]:
         """A picture as white light would have it."""
@@ -89,7 +89,7 @@ def estimate_illuminant(rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray,
     votes.append((_chromaticity(_minkowski(edges[usable])), _STATISTICS_SIGMA))
     if (usable & of_walls).sum() >= SETTINGS.min_pixels:
         votes.append((_chromaticity(_bright_median(light[usable & of_walls])), _WALLS_SIGMA))
-    return _of_chromaticity(_combined(votes))
+    return _from_chromaticity(_combined(votes))
 
 
 def _reduced(
@@ -117,7 +117,7 @@ def _chromaticity(light: Float[np.ndarray, "3"]) -> Float[np.ndarray, "2"]:
     return np.array([red - blue, (red + blue) / 2 - green])
 
 
-def _of_chromaticity(chromaticity: Float[np.ndarray, "2"]) -> Illuminant:
+def _from_chromaticity(chromaticity: Float[np.ndarray, "2"]) -> Illuminant:
     warm, magenta = chromaticity
     light = np.exp([warm / 2 + magenta, 0.0, magenta - warm / 2])
     red, green, blue = (float(c) for c in light / (light @ (0.2126, 0.7152, 0.0722)))

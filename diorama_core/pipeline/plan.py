@@ -42,17 +42,17 @@ from diorama_core.pipeline.scene_steps import (
     balanced_inputs,
     decided_supports,
     dressed,
+    enclose_objects,
     finished,
+    floor_object_ids,
     illuminant,
-    in_containing_room,
-    in_white_light,
     laid_out,
     object_colours,
-    on_floor,
     plane_pictures,
     position_noise,
     refined,
     supported,
+    white_balance_room,
     with_network_inputs,
 )
 from diorama_core.pipeline.stages import ProposalStages, Stages
@@ -163,10 +163,10 @@ def reasons_of_build(
     """
     named_by = "you" if given.boxes or given.instances is not None else "the detector"
     scene, kinds = refined.scene, {item.id: item.category for item in refined.scene.objects}
-    reasons = [r for o in objects if o.id in kinds for r in _of_kind(o, kinds[o.id], named_by)]
+    reasons = [r for o in objects if o.id in kinds for r in _kind_reasons(o, kinds[o.id], named_by)]
     reasons += [r for p in posed for r in p.reasons or ()]
     reasons += geometry.reasons or ()
-    reasons += _of_depth(inputs, geometry, noise) + _of_supports(graph, scene)
+    reasons += _depth_reasons(inputs, geometry, noise) + _support_reasons(graph, scene)
     reasons += corrected.reasons
     reasons += reasons_of_change(corrected.scene, settled.scene, "layout", "it rests on something, clear of the others")
     reasons += reasons_of_change(settled.scene, scene, "refinement", "its outline fits the photo better there")
@@ -174,8 +174,8 @@ def reasons_of_build(
     return tuple(sorted((r for r in reasons if r.object_id in order), key=lambda r: order[r.object_id]))
 
 
-def _of_kind(item: DetectedObject, kind: str, named_by: str) -> list[Reason]:
-    """How much likelier its word, its picture and its place make a kind than kinds are on average."""
+def _kind_reasons(item: DetectedObject, kind: str, named_by: str) -> list[Reason]:
+    """Evidence of an object's word, picture and place for a kind, against kinds on average."""
     named, reasons = is_named(item.label), []
     by_word: Mapping[str, float] = meanings(item.label, item.category)
     if named and kind in by_word:
@@ -199,8 +199,8 @@ def _kind_reason(item: DetectedObject, term: str, nats: float, sentence: str) ->
     return Reason(item.id, "kind", term, nats, "nats", sentence)
 
 
-def _of_depth(inputs: Inputs, geometry: ObjectGeometry, noise: ObservationNoise) -> list[Reason]:
-    """Where distances were measured, that places them."""
+def _depth_reasons(inputs: Inputs, geometry: ObjectGeometry, noise: ObservationNoise) -> list[Reason]:
+    """Evidence of measured depth for the places of objects."""
     if inputs.depth_m is None:
         return []
     nats = min(0.5 * (SCALE.change / noise.along) ** 2, SCALE.max_nats)
@@ -208,8 +208,8 @@ def _of_depth(inputs: Inputs, geometry: ObjectGeometry, noise: ObservationNoise)
     return [Reason(c.object_id, "place", "depth", nats, "nats", word) for c in geometry.cuboids]
 
 
-def _of_supports(graph: SceneGraph | None, scene: Scene) -> list[Reason]:
-    """How sure the graph is of what holds an object, where it still is what the graph says."""
+def _support_reasons(graph: SceneGraph | None, scene: Scene) -> list[Reason]:
+    """Evidence of the graph for what holds an object, where it still is what the graph says."""
     if graph is None:
         return []
     parents = {edge.child: edge.parent for edge in scene.supports}
@@ -272,7 +272,7 @@ PLAN: tuple[Step, ...] = (
     # The room's and the objects' colours are those that white light would show.
     Derivation(illuminant, ("inputs", "objects", "architecture", "geometry"), "illuminant"),
     Derivation(balanced_inputs, ("inputs", "illuminant"), "balanced_inputs"),
-    Derivation(in_white_light, ("architecture", "illuminant"), "white_room"),
+    Derivation(white_balance_room, ("architecture", "illuminant"), "white_room"),
     Derivation(object_colours, ("balanced_inputs", "furniture_objects", "posed"), "colours"),
     Derivation(assemble, ("furniture_objects", "geometry", "white_room", "posed", "library", "colours"), "posed_scene"),
     # What holds what is decided for all objects together, now that their shapes and the walls are known.
@@ -293,7 +293,7 @@ PLAN: tuple[Step, ...] = (
         "nothing reaches it where it was seen",
     ),
     Correction(
-        in_containing_room,
+        enclose_objects,
         ("on_near_supports", "library", "noise", "geometry", "architecture"),
         "corrected",
         "the room is around everything",
@@ -306,7 +306,7 @@ PLAN: tuple[Step, ...] = (
         "appearance",
         beside=True,
     ),
-    Derivation(on_floor, ("white_room",), "standing"),
+    Derivation(floor_object_ids, ("white_room",), "standing"),
     Derivation(lambda stages: stages.filler, ("stages",), "filler"),
     Derivation(
         plane_pictures,

@@ -75,7 +75,7 @@ def balanced_inputs(inputs: Inputs, light: Illuminant) -> Inputs:
     return replace(inputs, photo=replace(inputs.photo, rgb=light.balanced(inputs.photo.rgb)))
 
 
-def in_white_light(room: ArchitectureEstimate, light: Illuminant) -> ArchitectureEstimate:
+def white_balance_room(room: ArchitectureEstimate, light: Illuminant) -> ArchitectureEstimate:
     """The room in the colours that it would have in white light."""
     coloured = [(plane, light.albedo(np.array(plane.colour))) for plane in room.architecture.planes]
     planes = tuple(replace(p, colour=(float(c[0]), float(c[1]), float(c[2]))) for p, c in coloured)
@@ -113,19 +113,19 @@ def decided_supports(
 def supported(posed: Scene, supports: DecidedSupports) -> Corrected:
     """The scene with its supports decided, and what that changed."""
     changes = reasons_of_change(posed, supports.scene, "supports", "what holds it agrees with where it was seen")
-    terms = (reason for name, choice in supports.choices.items() for reason in _of_support(name, choice))
+    terms = (reason for name, choice in supports.choices.items() for reason in _support_reasons(name, choice))
     return Corrected(supports.scene, supports.notes, (*changes, *terms))
 
 
-def _of_support(object_id: str, choice: SupportChoice) -> Iterator[Reason]:
-    """What speaks for the chosen supporter rather than for the next likeliest, term by term."""
+def _support_reasons(object_id: str, choice: SupportChoice) -> Iterator[Reason]:
+    """Evidence for the chosen supporter rather than for the next likeliest, term by term."""
     for term, nats in choice.shares.items():
         sentence = sentence_of(term, choice.hypothesis)
         if sentence and nats >= SCALE.least_nats:
             yield Reason(object_id, "support", term, nats, "nats", sentence)
 
 
-def in_containing_room(
+def enclose_objects(
     scene: Scene, library: ShapeLibrary, noise: ObservationNoise, geometry: ObjectGeometry, room: ArchitectureEstimate
 ) -> Scene:
     """The scene in a room around all of its objects.
@@ -143,7 +143,7 @@ def in_containing_room(
     )
 
 
-def on_floor(room: ArchitectureEstimate) -> frozenset[str]:
+def floor_object_ids(room: ArchitectureEstimate) -> frozenset[str]:
     """Ids of the objects that the room's estimate puts on a floor."""
     floors = {p.id for p in room.architecture.by_role("floor")}
     return frozenset(edge.child for edge in room.supports if edge.parent in floors)
@@ -242,10 +242,10 @@ def finished(
         trimmed = without_floor_behind_walls(scene, room.architecture.floor)
         scene, cut = refitted_textures(scene, trimmed, textures)
         textures |= cut
-    return FinishedScene(_at_given_height(scene, inputs.camera_height_m), textures | dict(look.pictures))
+    return FinishedScene(_rescale_to_height(scene, inputs.camera_height_m), textures | dict(look.pictures))
 
 
-def _at_given_height(scene: Scene, camera_height_m: float | None) -> Scene:
+def _rescale_to_height(scene: Scene, camera_height_m: float | None) -> Scene:
     """The scene in the scale that a person gave."""
     if camera_height_m is None or scene.camera is None:
         return scene

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_core.models.manifest import NETWORKS, in_half, network, networks_of
+from diorama_core.models.manifest import NETWORKS, half_precision_networks, network, networks_of
 
 
 def test_a_side_is_a_whole_number_of_patches() -> None:
@@ -24,7 +24,7 @@ def test_files_in_half_precision_stand_for_the_full_ones() -> None:
         )
         assert half.size_bytes < full.size_bytes
         assert not half.tiers, "sets name the full ones"
-    ids = [n.id for n in in_half(networks_of("default"))]
+    ids = [n.id for n in half_precision_networks(networks_of("default"))]
     assert {"owlv2-base-fp16", "sam2.1-base-plus-fp16", "moge-2-vitb"} <= set(ids)
     assert not {"owlv2-base", "sam2.1-base-plus"} & set(ids)
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.geometry.openings import STANDS_OUT_M
-from diorama_core.multiview.one_scene import acyclic, in_proportion, moved_to_room, set_into_wall
+from diorama_core.multiview.one_scene import acyclic, fuse_proportions, moved_to_room, set_into_wall
 from diorama_core.scene.types import Pose, Support, yaw_rotation
 from tests.app.small_room import furnished_scene
 
@@ -24,13 +24,13 @@ def test_an_edge_that_would_close_a_circle_is_left_out() -> None:
 @given(st.tuples(EXTENT, EXTENT, EXTENT), st.floats(0.5, 2.0))
 def test_what_has_the_proportions_of_its_shape_keeps_its_size(shape, scale) -> None:
     size = scale * np.array(shape)
-    found = in_proportion(size, np.array([0.05, 0.3, 0.1]), np.array(shape))
+    found = fuse_proportions(size, np.array([0.05, 0.3, 0.1]), np.array(shape))
     np.testing.assert_allclose(found, size, rtol=1e-9)
 
 
 def test_extents_that_boxes_hardly_tell_follow_the_shape() -> None:
     shape, measured = np.array([0.5, 1.0, 2.0]), np.array([2.0, 1.0, 2.0])
-    depth, width, height = in_proportion(measured, np.array([2.0, 0.02, 0.02]), shape)
+    depth, width, height = fuse_proportions(measured, np.array([2.0, 0.02, 0.02]), shape)
     assert depth == pytest.approx(0.5, rel=0.05)
     assert (width, height) == pytest.approx((1.0, 2.0), rel=0.02)
 

@@ -11,7 +11,7 @@ from diorama_core.multiview.sphere_views import (
     drawn_on_sphere,
     found_in_views,
     marked_views,
-    on_picture,
+    picture_boxes,
     sphere_views,
     view_photo,
 )
@@ -51,7 +51,7 @@ def test_a_thing_at_the_seam_is_one() -> None:
 def test_boxes_of_the_picture_come_back_also_across_the_seam(x: float, wide: float, y: float, tall: float) -> None:
     drawn = LabelledBox((x, y, x + wide, y + tall), "chair", "chair")
     things = drawn_on_sphere([drawn], SIZE, np.eye(3))
-    boxes = on_picture(things, SIZE, np.eye(3))
+    boxes = picture_boxes(things, SIZE, np.eye(3))
     assert len(boxes) == (2 if x + wide > SIZE[0] + 2 else 1)
     assert boxes[0].box[0] == pytest.approx(x, abs=0.01)
     beyond = 0.0 if x + wide <= SIZE[0] + 2 else SIZE[0]

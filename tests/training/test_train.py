@@ -12,7 +12,7 @@ import torch
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.io.assets import CARD, DETECTOR, NAMER, OUTLINER
 from diorama_core.models.images import box_crop, box_geometry
-from diorama_core.models.outliner import SIDE, BoxOutliner, in_photo, window
+from diorama_core.models.outliner import SIDE, BoxOutliner, warp_to_photo, window
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.models.runtime import SessionPool
 from diorama_core.progress import Progress
@@ -138,4 +138,4 @@ def test_the_exported_outliner_answers_as_the_network_did(tmp_path: Path, rng: n
     with torch.no_grad():
         share = torch.sigmoid((network(seen) + network(seen.flip(3)).flip(2)) / 2)[0].numpy()
     (found,) = BoxOutliner.of(tmp_path).outlines(rgb, [box])
-    np.testing.assert_allclose(found, in_photo(share, box, (90, 130)), atol=1e-4)
+    np.testing.assert_allclose(found, warp_to_photo(share, box, (90, 130)), atol=1e-4)

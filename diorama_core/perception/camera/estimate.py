@@ -45,7 +45,7 @@ class EmbeddedCamera:
         photo = inputs.photo
         given, stated = _stated_intrinsics(inputs)
         progress.report(0.1, "looking for straight lines")
-        segments = _of_the_room(line_segments_px(photo.rgb), photo, self.settings)
+        segments = _without_frame_edges(line_segments_px(photo.rgb), photo, self.settings)
         assumed = given or _habitual_intrinsics(photo, self.settings.focal_prior[0])
         side = max(photo.width, photo.height)
         progress.report(0.3, "reading the room's directions")
@@ -66,10 +66,10 @@ class EmbeddedCamera:
         return _with_depth(estimate, inputs, self.hypotheses, self.settings)
 
 
-def _of_the_room(
+def _without_frame_edges(
     segments_px: Float[np.ndarray, "n 4"], photo: Photo, settings: LineCameraSettings
 ) -> Float[np.ndarray, "m 4"]:
-    """Without the edges of a plain frame around the picture, which many cameras' rectification leaves behind."""
+    """Segments without the edges of a plain frame around the picture, which rectification often leaves behind."""
     size = np.array([photo.width, photo.height])
     margin = settings.frame_margin * size.max()
     ends = segments_px.reshape(-1, 2, 2)

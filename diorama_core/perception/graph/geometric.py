@@ -124,7 +124,7 @@ def _ceiling_cost(obj: ObjectSurroundings, settings: GeometricGraphSettings) -> 
 def _carried_cost(obj: ObjectSurroundings, other: ObjectSurroundings, settings: GeometricGraphSettings) -> float:
     """How badly an object would rest on another's top, seat or shelves."""
     if other.category.name in RUGS:
-        return _on_rug_cost(obj, other, settings)
+        return _rug_cost(obj, other, settings)
     above = obj.below.get(other.id, 0.0)
     carries = other.category.supports_objects or other.category is UNKNOWN
     stacked = above if other.category.name in STACKED_ON else 0.0
@@ -136,15 +136,15 @@ def _carried_cost(obj: ObjectSurroundings, other: ObjectSurroundings, settings: 
     if other.category.name in WITH_BOARDS and other.bottom_m - 0.05 < obj.bottom_m < other.top_m - 0.05:
         levels.append((obj.bottom_m, settings.inner_gap_m, 0.8))
     gap = min(_gap_cost(abs(obj.bottom_m - z), usual, settings) + extra for z, usual, extra in levels)
-    outside = _outside(obj.footprint, other.footprint)
+    outside = _share_outside(obj.footprint, other.footprint)
     area, theirs = (float(np.prod(t.footprint[1] - t.footprint[0])) for t in (obj, other))
     larger = settings.larger_cost * min(max(np.log(max(area, 1e-4) / max(theirs, 1e-4)), 0.0), 1.0)
     return float(cost + gap + 5.0 * outside + larger + settings.below_weight * (1.0 - above))
 
 
-def _on_rug_cost(obj: ObjectSurroundings, rug: ObjectSurroundings, settings: GeometricGraphSettings) -> float:
-    """A rug carries what stands within it, at the floor's height, where nothing else is seen just below."""
-    outside = _outside(obj.footprint, rug.footprint)
+def _rug_cost(obj: ObjectSurroundings, rug: ObjectSurroundings, settings: GeometricGraphSettings) -> float:
+    """Cost of a rug below what stands within it, at the floor's height, where nothing else is seen just below."""
+    outside = _share_outside(obj.footprint, rug.footprint)
     on_rug = obj.below.get(rug.id, 0.0)
     within = settings.within_rug * min(on_rug + obj.hidden_below, 1.0)
     return float(
@@ -155,7 +155,7 @@ def _on_rug_cost(obj: ObjectSurroundings, rug: ObjectSurroundings, settings: Geo
     )
 
 
-def _outside(child: Float[np.ndarray, "2 2"], parent: Float[np.ndarray, "2 2"]) -> float:
+def _share_outside(child: Float[np.ndarray, "2 2"], parent: Float[np.ndarray, "2 2"]) -> float:
     """Share of the child's footprint that is not over the parent's, both along the world's axes."""
     shared = np.minimum(child[1], parent[1]) - np.maximum(child[0], parent[0])
     extent = np.maximum(child[1] - child[0], 0.02)

@@ -94,9 +94,9 @@ def observed(
         world = points_camera(depth, camera.intrinsics) @ camera.T_world_camera[:3, :3].T + camera.position
     surroundings = []
     for index, item in enumerate(present):
-        below, hidden = _below(index, item, present, owners, depth, world, settings)
+        below, hidden = _rim_contacts(index, item, present, owners, depth, world, settings)
         low, high = _extent(item, cuboids[item.id], world, depth)
-        behind = _behind(index, item, owners, depth)
+        behind = _depth_behind_m(index, item, owners, depth)
         category = resolve(item.category).category
         surroundings.append(
             ObjectSurroundings(
@@ -132,7 +132,7 @@ def _extent(
     return low, high
 
 
-def _below(
+def _rim_contacts(
     index: int,
     item: DetectedObject,
     objects: list[DetectedObject],
@@ -141,7 +141,7 @@ def _below(
     world: Float[np.ndarray, "h w 3"] | None,
     settings: GeometricGraphSettings,
 ) -> tuple[dict[str, float], float]:
-    """What is seen under the object's lower rim, and how much of the rim something nearer hides."""
+    """Shares of the object's lower rim that end on others, and the share that something nearer hides."""
     mine = owners == index
     height = mine.shape[0]
     columns = np.flatnonzero(mine.any(axis=0))
@@ -179,8 +179,10 @@ def _below(
     return below, hidden
 
 
-def _behind(index: int, item: DetectedObject, owners: Int32[np.ndarray, "h w"], depth_m: np.ndarray | None) -> float:
-    """How far behind the object the room is, just around it."""
+def _depth_behind_m(
+    index: int, item: DetectedObject, owners: Int32[np.ndarray, "h w"], depth_m: np.ndarray | None
+) -> float:
+    """Distance from the object to the room just around it, along the view."""
     if depth_m is None:
         return 0.0
     mine = (owners == index).astype(np.uint8)

@@ -51,17 +51,17 @@ def recognised(content: bytes, name: str, photo_size: tuple[int, int] | None) ->
     if is_confidence(name):
         return (Recognised("confidence", "confidence of depth"),)
     if content.startswith((b"\x93NUMPY", b"PK\x03\x04")):
-        return _of_numbers(source, photo_size)
+        return _recognise_array(source, photo_size)
     kind = raw_kind(content)
     if kind is not None:
         return (Recognised("photo", "a camera's raw photo"),)
     picture = _picture(source)
     if picture is not None:
-        return _of_picture(picture, source, photo_size)
+        return _recognise_picture(picture, source, photo_size)
     form = form_of(DEPTH_FORMS, DepthContent(source, photo_size or (4, 3)))
     if form is not None and not content.lstrip()[:1].startswith(_TEXT_STARTS):
         return (Recognised("depth", form.name),)
-    return _of_text(source)
+    return _recognise_text(source)
 
 
 def recognised_alone(content: bytes, name: str) -> tuple[Recognised, ...]:
@@ -74,7 +74,7 @@ def recognised_alone(content: bytes, name: str) -> tuple[Recognised, ...]:
     return recognised(content, name, None if picture is None else picture.size)
 
 
-def _of_numbers(source: Source, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
+def _recognise_array(source: Source, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
     data = source.data
     if data.startswith(b"PK") and b".npy" not in data[:300]:
         return (Recognised("masks", "a zip archive of masks"),)
@@ -87,7 +87,9 @@ def _of_numbers(source: Source, photo_size: tuple[int, int] | None) -> tuple[Rec
     return (likely[1], likely[0]) if whole else (likely[0],)
 
 
-def _of_picture(picture: Image.Image, source: Source, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
+def _recognise_picture(
+    picture: Image.Image, source: Source, photo_size: tuple[int, int] | None
+) -> tuple[Recognised, ...]:
     photo = Recognised("photo", f"a photo ({picture.width} x {picture.height})")
     if photo_size is not None and picture.format == "JPEG":
         return (Recognised("masks", "one object, white on black"), photo) if _is_mask(picture, source) else (photo,)
@@ -121,7 +123,7 @@ def _is_mask(picture: Image.Image, source: Source) -> bool:
     return mask is not None and bool(mask.any())
 
 
-def _of_text(source: Source) -> tuple[Recognised, ...]:
+def _recognise_text(source: Source) -> tuple[Recognised, ...]:
     try:
         form = form_of(BOX_FORMS, parsed(source, source.name, (0, 0)))
     except InputError as error:

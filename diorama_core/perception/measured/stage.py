@@ -34,7 +34,7 @@ def _edge(
         return Support(key, "ceiling", "mounted on")
     if category.mount == "wall" and bottom > settings.rug_m:
         return Support(key, "wall", "mounted on")
-    below = _below(key, extents, categories, settings)
+    below = _supporter_of(key, extents, categories, settings)
     if below is not None and (category.mount == "surface" or bottom > settings.on_floor_m):
         return Support(key, below)
     if category.mount == "wall":
@@ -42,7 +42,7 @@ def _edge(
     return Support(key, "floor")
 
 
-def _below(
+def _supporter_of(
     key: str, extents: dict[str, TurnedExtent], categories: dict[str, Category], settings: MeasuredSettings
 ) -> str | None:
     """The object whose top, or seat, is nearest under this one's bottom and under its middle."""
@@ -50,7 +50,7 @@ def _below(
     bottom = float(extent.low[2])
     best: tuple[float, str] | None = None
     for other, candidate in extents.items():
-        if other == key or not categories[other].supports_objects or not _over(extent, candidate):
+        if other == key or not categories[other].supports_objects or not _is_over(extent, candidate):
             continue
         if candidate.low[2] >= bottom or _volume(candidate) <= _volume(extent):
             continue
@@ -64,8 +64,8 @@ def _volume(extent: TurnedExtent) -> float:
     return float(np.prod(extent.size))
 
 
-def _over(child: TurnedExtent, parent: TurnedExtent) -> bool:
-    """Whether the child's middle is above the parent's footprint, within a small margin."""
+def _is_over(child: TurnedExtent, parent: TurnedExtent) -> bool:
+    """True if the child's middle is above the parent's footprint, within a small margin."""
     middle = child.centre_world @ yaw_rotation(parent.yaw_rad)
     return bool(((middle[:2] > parent.low[:2] - 0.08) & (middle[:2] < parent.high[:2] + 0.08)).all())
 

@@ -156,7 +156,7 @@ def gather(
     trust = trust * np.where(exact, 1.0, settings.observed.guessed_trust)[:, None]
     weight = np.column_stack([np.where(unseen[:, e].any(axis=1), 0.0, 1.0) for e in CORNER_EDGES]) * trust
     reach = np.array([mask_reach(o, b) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
-    in_front, before = _bottom_lower(boxes, height, settings.observed), _before(objects, boxes, settings.observed)
+    in_front, before = _bottom_lower(boxes, height, settings.observed), _strip_shares(objects, boxes, settings.observed)
     meanings = tuple(o.meanings for o in objects)
     return BoxObservations(
         categories,
@@ -169,7 +169,7 @@ def gather(
         weight,
         exact,
         before,
-        _beside(objects, boxes, settings.observed),
+        _edge_shares(objects, boxes, settings.observed),
         _ends_seen(objects, settings.observed),
         meanings,
         settings,
@@ -207,7 +207,7 @@ def seen_depths(
     return SeenDepths(log_height, seen.scale_log_sigma, np.array(depth) - log_height, np.array(sigma, dtype=float))
 
 
-def _before(
+def _strip_shares(
     objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"], settings: BoxObservationSettings
 ) -> Float[np.ndarray, "n n"]:
     """For objects i and j the share of j's mask in the strips left and right of i's lower end, the emptier side's."""
@@ -225,7 +225,7 @@ def _before(
     return before
 
 
-def _beside(
+def _edge_shares(
     objects: tuple[DetectedObject, ...], boxes: Float[np.ndarray, "n 4"], settings: BoxObservationSettings
 ) -> Float[np.ndarray, "n n 4"]:
     """For objects i and j and edges of i: the share of points just outside the edge that j's mask has."""

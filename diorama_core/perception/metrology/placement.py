@@ -106,7 +106,9 @@ def place_all(
         height_m: of the camera above the floor.
         settings: of metrology.
     """
-    floor = _not_through_tops(_on_floor(observations, view, height_m, settings), observations, view, height_m, settings)
+    floor = _not_through_tops(
+        _place_on_floor(observations, view, height_m, settings), observations, view, height_m, settings
+    )
     standing = [p for p in floor.values() if _tells_the_room(p, observations, settings.placement)]
     doors = [i for i, category in enumerate(observations.categories) if category.name == "door"]
     hung = [i for i, category in enumerate(observations.categories) if category.name in _HUNG_CARRIERS]
@@ -167,7 +169,7 @@ def _cheaper(best: Mapping[int, Placement], challengers: Mapping[int, Placement]
     return {**best, **better}
 
 
-def _on_floor(
+def _place_on_floor(
     observations: BoxObservations, view: View, height_m: float, settings: MetrologySettings
 ) -> dict[int, Placement]:
     """Every object that may stand on the floor, arranged so that they fit together; sets are of one size."""

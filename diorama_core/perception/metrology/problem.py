@@ -204,7 +204,7 @@ def values(
             np.einsum("nij,nj->ni", problems.whitening, unknowns[:, 2:5] - problems.log_size),
             unknowns[:, 5:6],
             ((boxes.top_m - problems.top_m) / problems.top_sigma_m)[:, None],
-            _outside_footprint(boxes, problems, settings),
+            _footprint_overhang(boxes, problems, settings),
             _off_wall(boxes, problems, settings),
             _too_far(boxes, settings),
             _off_depth(boxes, corners, problems, view, settings),
@@ -310,8 +310,8 @@ def _gone_on(
     return np.sqrt(np.minimum(np.maximum(cost, 0.0) + 2 * settings.robust_beyond * beyond, seen**2))
 
 
-def _outside_footprint(boxes: Cuboids, problems: Problems, settings: CuboidFitSettings) -> Float[np.ndarray, "n 2"]:
-    """How far the base reaches beyond its supporter, along the supporter's axes; its centre where it is larger."""
+def _footprint_overhang(boxes: Cuboids, problems: Problems, settings: CuboidFitSettings) -> Float[np.ndarray, "n 2"]:
+    """Overhang of the base beyond its supporter, along the supporter's axes; its centre where it is larger."""
     x, y, yaw, half_depth, half_width = problems.footprint.T
     c, s = np.cos(yaw), np.sin(yaw)
     dx, dy = boxes.centre[:, 0] - x, boxes.centre[:, 1] - y

@@ -119,11 +119,11 @@ def reasons_of(
                 cost = float(of_terms[of_term].sum())
                 if abs(cost) >= SCALE.least_nats:
                     reasons.append(Reason(object_id, decision, term, cost, "nats", sentences[column]))
-    return (*reasons, *(_of_support(p, objects) for p in placements))
+    return (*reasons, *(_support_reason(p, objects) for p in placements))
 
 
-def _of_support(placement: Placement, objects: Sequence[DetectedObject]) -> Reason:
-    """How sure it is that an object's foot is seen where it stands; or that its kind hangs where it does."""
+def _support_reason(placement: Placement, objects: Sequence[DetectedObject]) -> Reason:
+    """Evidence that an object's foot is seen where it stands, or that its kind hangs where it does."""
     object_id, supporter = objects[placement.index].id, placement.supporter
     if supporter in HUNG:
         return Reason(object_id, "support", "kind", SCALE.hung_nats, "nats", f"its kind {HUNG[supporter]}")

@@ -59,20 +59,20 @@ def jacobian(
     frame = _Frame.of(boxes, problems, view)
     edges, is_informative = _edges(corners, frame, here, problems, view, settings)
     slopes = np.zeros((len(problems), here.residuals.shape[1], UNKNOWNS))
-    plan = _on_the_plan(boxes, view)
+    plan = _plan_slopes(boxes, view)
     slopes[:, EDGES] = edges
     slopes[:, CUT] = _cut_off(corners, frame, problems, view, settings)
     slopes[:, SIZES, 2:5] = problems.whitening
     slopes[:, BASE, 5] = 1.0
     slopes[:, TOP, 4] = boxes.size_m[:, 2] / problems.top_sigma_m
     slopes[:, TOP, 5] = problems.base_sigma_m / problems.top_sigma_m
-    slopes[:, FOOTPRINT, :4] = _outside_footprint(boxes, plan, here.residuals[:, FOOTPRINT], problems, settings)
+    slopes[:, FOOTPRINT, :4] = _overhang_slopes(boxes, plan, here.residuals[:, FOOTPRINT], problems, settings)
     slopes[:, WALL, :3] = _off_wall(boxes, plan, here.residuals[:, WALL], problems, settings)
     slopes[:, FAR, :2] = _too_far(boxes, plan, here.residuals[:, FAR], settings)
     slopes[:, DEPTH] = _off_depth(boxes, corners, frame, here.residuals[:, DEPTH], problems, view, settings)
     rest = np.flatnonzero(~is_informative)
     if len(rest):
-        slopes[rest] = _by_differences(problems.rows(rest), unknowns[rest], here.rows(rest), view, settings)
+        slopes[rest] = _finite_differences(problems.rows(rest), unknowns[rest], here.rows(rest), view, settings)
     return slopes
 
 
@@ -164,13 +164,13 @@ def _cut_off(
     return slopes
 
 
-def _on_the_plan(boxes: Cuboids, view: View) -> Float[np.ndarray, "n 2 2"]:
-    """How the centres move on the floor: x and y by the sideways tangent and by the logarithm of the distance."""
+def _plan_slopes(boxes: Cuboids, view: View) -> Float[np.ndarray, "n 2 2"]:
+    """Slopes of the centres on the floor: x and y by the sideways tangent and by the logarithm of the distance."""
     plan, right = boxes.centre[:, :2], np.array([view.heading[1], -view.heading[0]])
     return np.stack([(plan @ view.heading)[:, None] * right, plan], axis=-1)
 
 
-def _outside_footprint(
+def _overhang_slopes(
     boxes: Cuboids,
     plan: Float[np.ndarray, "n 2 2"],
     here: Float[np.ndarray, "n 2"],
@@ -242,7 +242,7 @@ def _off_depth(
     return np.where(near[:, None], 0.0, slopes / (np.where(near, 1.0, depth) * problems.depth_sigma)[:, None])
 
 
-def _by_differences(
+def _finite_differences(
     problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: Values, view: View, settings: CuboidFitSettings
 ) -> Float[np.ndarray, "n r 6"]:
     count = len(problems)

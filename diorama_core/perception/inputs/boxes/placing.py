@@ -176,17 +176,17 @@ def _best(readings: Sequence[_Reading], photo: DecodedPhoto) -> _Reading:
     if fits and len(first.corners) < MIN_BOXES:
         return first
     edges = EdgeMap(photo.photo.rgb)
-    if fits and edges.agreement(_in_photo(first.corners, photo)) >= CLEAR_AGREEMENT:
+    if fits and edges.agreement(_to_photo_pixels(first.corners, photo)) >= CLEAR_AGREEMENT:
         return first
     possible = [r for r in readings[1:] if _fits(r.corners, photo)]
     if not possible:
         return first
     if not fits and len(possible) == 1 and photo.frame.orientation > 1:
         return possible[0]
-    agreements = [edges.agreement(_in_photo(r.corners, photo)) for r in possible]
+    agreements = [edges.agreement(_to_photo_pixels(r.corners, photo)) for r in possible]
     best = int(np.argmax(agreements))
     margin = max(MIN_MARGIN, MARGIN_OF_ONE / len(first.corners) ** 0.5)
-    least = edges.agreement(_in_photo(first.corners, photo)) + margin if fits else MIN_AGREEMENT
+    least = edges.agreement(_to_photo_pixels(first.corners, photo)) + margin if fits else MIN_AGREEMENT
     return possible[best] if agreements[best] > least and len(first.corners) >= MIN_BOXES else first
 
 
@@ -200,7 +200,7 @@ def _fits(corners: Sequence[Corners], photo: DecodedPhoto) -> bool:
     return bool((areas >= 1.0).all() and inside.all())
 
 
-def _in_photo(corners: Sequence[Corners], photo: DecodedPhoto) -> list[Corners]:
+def _to_photo_pixels(corners: Sequence[Corners], photo: DecodedPhoto) -> list[Corners]:
     left, top = photo.frame.margins[:2]
     scale = photo.photo.width / photo.frame.inner_size[0]
     moved = [(x1 - left, y1 - top, x2 - left, y2 - top) for x1, y1, x2, y2 in corners]

@@ -115,7 +115,7 @@ def _task_of(text: BoxText) -> object:
     stem = Path(text.photo_name).stem
     named = [t for t in tasks if isinstance(t, dict) and stem in str(t.get("data", t.get("image", "")))]
     if len(named) != 1:
-        raise InputError(_of_others(text, len(tasks)))
+        raise InputError(_several_pictures_message(text, len(tasks)))
     return named[0]
 
 
@@ -150,6 +150,6 @@ def _via_pictures(document: object) -> list[dict[str, Any]]:
     return pictures_listed if is_via_file else []
 
 
-def _of_others(text: BoxText, count: int) -> str:
+def _several_pictures_message(text: BoxText, count: int) -> str:
     shown = shortened(text.photo_name, 60)
     return f"{text.source.name}: it is of {count} pictures, none of them called {shown}; keep what is of this photo"

@@ -39,7 +39,7 @@ def without_unsure(
         source: the file of the depth.
         values: as it holds them.
     """
-    for beside in tuple(c for c in source.companions if is_map(c)) or _beside(source):
+    for beside in tuple(c for c in source.companions if is_map(c)) or _confidence_files(source):
         confidence = _read(beside, values.shape)
         if confidence is None:
             return values, (
@@ -49,7 +49,7 @@ def without_unsure(
     return values, ()
 
 
-def _beside(source: Source) -> tuple[Source, ...]:
+def _confidence_files(source: Source) -> tuple[Source, ...]:
     """Files that may be the confidence of a depth map, likeliest first."""
     stem, name = glob.escape(Path(source.name).stem), glob.escape(Path(source.name).name)
     named = [f"{stem}{joint}conf*.*" for joint in "_.-"]

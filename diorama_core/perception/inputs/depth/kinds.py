@@ -86,7 +86,7 @@ def depth_readings(
         focal: over the longer side, where it is known.
         asked: what they are said to be; a reading of that kind is among the answer.
     """
-    sample, order = sampled(values, valid), near_and_far(values, valid, boxes)
+    sample, order = sampled(values, valid), depth_order(values, valid, boxes)
     scale = max(float(np.median(sample.values)), 1e-12)
     sample = SampledDepth(sample.x, sample.y, sample.values / scale)
     readings = [
@@ -96,17 +96,17 @@ def depth_readings(
     exact = readings[0].fit.explained > EXACT
     rays = () if exact and asked != "distance" else _ray_focals(sample, always=asked == "distance")
     for trial in rays if focal is None else (focal,):
-        readings.append(_reading("distance", DEPTH, planes_of(on_axis(sample, trial)), order, trial))
+        readings.append(_reading("distance", DEPTH, planes_of(to_axial_depth(sample, trial)), order, trial))
     for kind, function in () if exact and asked not in BENT else _bent(sample, asked):
         readings.append(_reading(kind, function, planes_of(sample, function), order))
-    restored = [_in_unit(r, scale) for r in readings]
+    restored = [_to_map_unit(r, scale) for r in readings]
     return tuple(sorted(restored, key=lambda r: -r.score))
 
 
-def near_and_far(
+def depth_order(
     values: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"], boxes: Sequence[LabelledBox]
 ) -> float:
-    """Whether larger numbers are farther (1) or nearer (-1): by the picture's lower end, and things' backgrounds."""
+    """Order of depth, 1 if larger numbers are farther, else -1: by the picture's lower end and objects' backgrounds."""
     height = len(values)
     known = values[valid]
     spread = float(np.ptp(np.percentile(known, [10, 90]))) or 1.0
@@ -116,13 +116,13 @@ def near_and_far(
     medians = []
     if lower is not None and middle is not None:
         medians.append(float(np.clip(2.0 * (middle - lower) / spread, -1.0, 1.0)))
-    votes = [v for box in boxes if (v := _before_background(values, valid, box, spread)) is not None]
+    votes = [v for box in boxes if (v := _background_order(values, valid, box, spread)) is not None]
     if votes:
         medians.append(float(np.mean(votes)))
     return float(np.mean(medians)) if medians else 0.0
 
 
-def on_axis(sample: SampledDepth, focal: float) -> SampledDepth:
+def to_axial_depth(sample: SampledDepth, focal: float) -> SampledDepth:
     """Distances along rays as depth along the optical axis."""
     rays = np.sqrt(1.0 + (sample.x**2 + sample.y**2) / focal**2)
     return SampledDepth(sample.x, sample.y, sample.values / rays)
@@ -139,15 +139,15 @@ def rays_of(height: int, width: int, focal: float) -> Float[np.ndarray, "h w"]:
 def _ray_focals(sample: SampledDepth, *, always: bool) -> tuple[float, ...]:
     """The focal length under which distances form planes best; none where depth forms clearly more."""
     few = sample.thinned(SEARCH_POINTS)
-    scores = {f: _share(on_axis(few, f), trials=SEARCH_TRIALS) for f in RAY_FOCALS}
+    scores = {f: _share(to_axial_depth(few, f), trials=SEARCH_TRIALS) for f in RAY_FOCALS}
     best, as_depth = max(scores, key=lambda f: scores[f]), _share(few, trials=SEARCH_TRIALS)
     if scores[best] < as_depth - NEARLY and not always:
         return ()
     if scores[best] > as_depth or always:
-        scores = {best: _share(on_axis(sample, best))}
+        scores = {best: _share(to_axial_depth(sample, best))}
         for step in (1.15, 1.07, 1.035):
             for near in (best / step, best * step):
-                scores[near] = _share(on_axis(sample, near))
+                scores[near] = _share(to_axial_depth(sample, near))
             best = max(scores, key=lambda f: scores[f])
     return (best,)
 
@@ -185,7 +185,7 @@ def _reading(
     return DepthReading(kind, score, fit, function, focal, order)
 
 
-def _in_unit(reading: DepthReading, scale: float) -> DepthReading:
+def _to_map_unit(reading: DepthReading, scale: float) -> DepthReading:
     """The reading in the map's own unit."""
     function, one = reading.function.of_larger(scale), np.ones(1)
     factor = float(function.inverse_depth(scale * one)[0] / reading.function.inverse_depth(one)[0])
@@ -193,8 +193,8 @@ def _in_unit(reading: DepthReading, scale: float) -> DepthReading:
     return replace(reading, fit=fit, function=function)
 
 
-def _before_background(values: np.ndarray, valid: np.ndarray, box: LabelledBox, spread: float) -> float | None:
-    """Whether what is above and beside a thing that stands on the floor has larger numbers (1) or smaller (-1)."""
+def _background_order(values: np.ndarray, valid: np.ndarray, box: LabelledBox, spread: float) -> float | None:
+    """Order of depth by the background above and beside an object on the floor: 1 if its numbers are larger, or -1."""
     if box.category == UNKNOWN.name or category(box.category).mount != "floor" or box.category == "rug":
         return None
     side = max(values.shape)

@@ -175,7 +175,7 @@ def _best_plane(
     """The affine function that most of the remaining points lie on, refined, and everybody's distance from it."""
     index, basis, affine = np.flatnonzero(left), numbers.basis, numbers.affine
     first = random.choice(index, trials)
-    triples = np.stack([first, *_near(basis, index, first, random)], axis=1)
+    triples = np.stack([first, *_nearby_points(basis, index, first, random)], axis=1)
     system = basis[triples]
     good = np.abs(np.linalg.det(system)) > 1e-5
     if not good.any():
@@ -191,7 +191,9 @@ def _best_plane(
     return plane, numbers.off(plane)
 
 
-def _near(basis: np.ndarray, index: np.ndarray, first: np.ndarray, random: np.random.Generator) -> list[np.ndarray]:
+def _nearby_points(
+    basis: np.ndarray, index: np.ndarray, first: np.ndarray, random: np.random.Generator
+) -> list[np.ndarray]:
     """Two further points for each first one, of several tries those that are nearest in the picture but not beside."""
     tries = random.choice(index, (2, 6, len(first)))
     distance = np.linalg.norm(basis[tries, :2] - basis[first, :2], axis=-1)

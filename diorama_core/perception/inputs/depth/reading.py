@@ -131,7 +131,7 @@ def read_depth(
         valid, laid = numbers > 0, (*laid, f"the depth lies {over} over the photo, by the edges of both; it was turned")
     depth, understood = _understood(source.name, numbers, valid, raw, options, _Scene.of(photo, boxes, intrinsics))
     coverage = _check_plausible(source.name, depth, values, raw, options)
-    resized, coarse = _at_size(depth, size)
+    resized, coarse = _resize_to_photo(depth, size)
     resized.setflags(write=False)
     return resized, (*raw.notes, *unsure, *upended, *laid, *voids, *understood, *coverage, *coarse)
 
@@ -197,7 +197,7 @@ def _understood(
     stated = 1.0 if raw.is_float else MILLIMETRES
     is_metric = options.kind == "depth" and options.per_metre is not None
     if is_metric or (options.kind == "auto" and valid.sum() < MIN_PIXELS):
-        return _in_metres(numbers, options.per_metre or stated), ()
+        return _to_metres(numbers, options.per_metre or stated), ()
     readings = depth_readings(numbers, valid, scene.boxes, scene.focal, options.kind)
     reading, notes = chosen_reading(name, readings, raw.stated_kind, options.kind)
     if reading.kind == "inverse":
@@ -215,7 +215,7 @@ def _understood(
     if options.per_metre is not None:
         doubt = f"{unit.note or unit.question}".split("; ")[0]
         notes += (f"{doubt}: check --depth-scale",) if unit.note or unit.question else ()
-        return _in_metres(along, options.per_metre), notes
+        return _to_metres(along, options.per_metre), notes
     if unit.question:
         answers = tuple(DepthAnswer(words, per_metre) for per_metre, words in unit.choices)
         raise AmbiguousDepthError(f"{name}: {unit.question}", answers)
@@ -223,10 +223,10 @@ def _understood(
         notes += (
             "the depth was taken for millimetres, which neither a floor nor named objects confirm: --depth-scale",
         )
-    return _in_metres(along, unit.per_metre), (*notes, *([unit.note] if unit.note else []))
+    return _to_metres(along, unit.per_metre), (*notes, *([unit.note] if unit.note else []))
 
 
-def _in_metres(numbers: Float32[np.ndarray, "h w"], per_metre: float) -> Float32[np.ndarray, "h w"]:
+def _to_metres(numbers: Float32[np.ndarray, "h w"], per_metre: float) -> Float32[np.ndarray, "h w"]:
     return numbers if per_metre == 1.0 else (numbers / np.float64(per_metre)).astype(np.float32)
 
 
@@ -279,10 +279,10 @@ def _unit_advice(median: float, raw: Shaped[np.ndarray, "h w"], about: RawDepth,
     return f"{read_as}; set --depth-scale (units per metre, now {scale:g}) or --depth-encoding"
 
 
-def _at_size(
+def _resize_to_photo(
     depth_m: Float32[np.ndarray, "h w"], photo_size: tuple[int, int]
 ) -> tuple[Float32[np.ndarray, "_ _"], tuple[str, ...]]:
-    """Nearest neighbour, so that no depth is invented between a chair's edge and the wall behind it."""
+    """Resize by nearest neighbour, so that no depth is invented between a chair's edge and the wall behind it."""
     height, width = depth_m.shape
     if (width, height) == photo_size:
         return depth_m, ()

@@ -95,7 +95,7 @@ def read_picture(source: Source) -> MaskMap:
         return painted(_pages(picture, source), source.name, "pages")
     load_pixels(picture, source, "mask")
     try:
-        return _of_picture(picture, source.name)
+        return _picture_masks(picture, source.name)
     except (ValueError, OSError, TypeError) as error:  # a palette that is not whole
         raise InputError(f"{source.name}: the masks are damaged; save them again as PNG") from error
 
@@ -135,7 +135,7 @@ def white_on_black(picture: Image.Image) -> Bool[np.ndarray, "h w"] | None:
     return np.asarray(grey >= 128) if blurred.mean() <= MAX_BLURRED_SHARE else None
 
 
-def _of_picture(picture: Image.Image, name: str) -> MaskMap:
+def _picture_masks(picture: Image.Image, name: str) -> MaskMap:
     if picture.mode == "P" and "transparency" not in picture.info:
         return _palette(picture)
     if picture.mode in ("RGBA", "LA", "PA", "P"):

@@ -41,7 +41,7 @@ def read_segments(source: Source, photo_name: str, photo_size: Size) -> MaskMap:
         InputError: of several pictures none is the photo, or what it holds is damaged.
     """
     document = parse_json(source.data, source.name, InputError, advice="masks are pictures, arrays or COCO's segments")
-    document, size = _of_photo(BoxText(source, document, photo_name, photo_size))
+    document, size = _photo_annotations(BoxText(source, document, photo_name, photo_size))
     masks: list[Bool[np.ndarray, "h w"]] = []
     for segment in _segments(document):
         mask = _mask(segment, size or photo_size, source.name)
@@ -74,8 +74,8 @@ def read_polygon_list(source: Source, photo_size: Size) -> MaskMap:
     return painted([m for m in masks if m.any()], source.name, "polygons")
 
 
-def _of_photo(text: BoxText) -> tuple[Any, Size | None]:
-    """What a document says of the photo, and the size of the annotated picture where it states one."""
+def _photo_annotations(text: BoxText) -> tuple[Any, Size | None]:
+    """Annotations of the photo in a document, and the size of the annotated picture where it states one."""
     document: Any = text.document
     if is_data_set(text):
         image, annotations = photo_of_data_set(text)

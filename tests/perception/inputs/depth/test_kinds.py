@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.perception.inputs.depth.kinds import depth_readings, near_and_far, rays_of
+from diorama_core.perception.inputs.depth.kinds import depth_order, depth_readings, rays_of
 from diorama_core.perception.inputs.depth.planes import PlaneFit, planes_of, sampled
 from diorama_core.perception.inputs.depth.reading import chosen_reading
 from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
@@ -54,8 +54,8 @@ def test_distances_along_rays_tell_the_focal_length() -> None:
 
 
 def test_near_and_far() -> None:
-    assert near_and_far(DEPTH, SEEN, THINGS) > 0.3
-    assert near_and_far(1.0 / DEPTH, SEEN, THINGS) < -0.3
+    assert depth_order(DEPTH, SEEN, THINGS) > 0.3
+    assert depth_order(1.0 / DEPTH, SEEN, THINGS) < -0.3
 
 
 def test_planes_of_a_room_meet_at_right_angles_under_its_focal_length() -> None:
