@@ -218,13 +218,13 @@ def _build_photo(a: argparse.Namespace, options: BuildOptions) -> None:
     else:
         print(f"{a.output}: {report['summary']}")
         if "left_out" in report:
-            print(_about_proposals(a.output, len(room.scene.objects), report["left_out"], _has_detector()))
+            print(_proposals_note(a.output, len(room.scene.objects), report["left_out"], _has_detector()))
         if not room.scene.objects:
             print(_invitation(a.output, detected=room.stages is not None and room.stages.detection is not None))
 
 
-def _about_proposals(project: Path, used: int, left_out: int, detector: bool) -> str:
-    """What to expect of a scene whose boxes nobody drew or checked.
+def _proposals_note(project: Path, used: int, left_out: int, detector: bool) -> str:
+    """Note on a scene whose boxes nobody drew or checked.
 
     Args:
         project: its folder.

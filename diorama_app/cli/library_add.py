@@ -119,7 +119,7 @@ def _formats() -> str:
 def _what_lies_in(folder: Path, skipped: Sequence[Trouble]) -> str:
     """The files of a folder without models, by what they are or by their endings."""
     if skipped:
-        return "; ".join(_by_reason(skipped))
+        return "; ".join(_lines_by_reason(skipped))
     endings = Counter(p.suffix.lower() or p.name for p in folder.rglob("*") if p.is_file())
     return ", ".join(f"{count} {ending}" for ending, count in endings.most_common(6)) or "nothing at all"
 
@@ -130,11 +130,11 @@ def _as_json(report: Added, name: str) -> dict[str, Any]:
 
 def _print_report(report: Added, name: str) -> None:
     for title, lines in (
-        ("not read", _by_reason(report.skipped)),
-        ("repaired", _by_note(report)),
+        ("not read", _lines_by_reason(report.skipped)),
+        ("repaired", _lines_by_note(report)),
         ("unsure how it stands or what it is", list(report.unsure)),
         ("against glTF's promise of +Y up, since the whole folder stands so", _broken_promises(report)),
-        ("refused", _by_reason(report.failed)),
+        ("refused", _lines_by_reason(report.failed)),
     ):
         for line in lines[:SHOWN]:
             print(f"{title}: {line}", file=sys.stderr)
@@ -156,7 +156,7 @@ def _broken_promises(report: Added) -> list[str]:
     return [f"{name} has {guess.up.value} up" for name, guess in guesses if FOLDERS in guess.up.reason]
 
 
-def _by_reason(troubles: Sequence[Trouble]) -> list[str]:
+def _lines_by_reason(troubles: Sequence[Trouble]) -> list[str]:
     """Each reason once, with the files that it is about."""
     files: dict[tuple[str, str], list[Path]] = {}
     for trouble in troubles:
@@ -186,7 +186,7 @@ def _table(report: Added) -> list[str]:
     return [*rows, f"and {left} more: diorama library list --library NAME"] if left > 0 else rows
 
 
-def _by_note(report: Added) -> list[str]:
+def _lines_by_note(report: Added) -> list[str]:
     """Each note once, with the shapes that it is about."""
     shapes: dict[str, list[str]] = {}
     for shape_id, notes in report.repaired:

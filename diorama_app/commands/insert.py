@@ -62,7 +62,7 @@ def insert_shape(client: Client, shape_id: str) -> None:
         return
     new_id = edits.fresh_id(scene, shape.category)
     if parent is not None:
-        on_it = _on(client, shape, new_id, parent)
+        on_it = _insert_on(client, shape, new_id, parent)
         if on_it is not None:
             session.edit(_inserting(shape.category), lambda scene: on_it, by=client, selection=(new_id,))
             _used(client, shape_id)
@@ -77,7 +77,7 @@ def insert_shape(client: Client, shape_id: str) -> None:
     _used(client, shape_id)
 
 
-def _on(client: Client, shape: Shape, new_id: str, parent: SceneObject) -> Scene | None:
+def _insert_on(client: Client, shape: Shape, new_id: str, parent: SceneObject) -> Scene | None:
     """The scene with the shape on an object; None where such things do not stand on such an object."""
     session, category = client.session, resolve(shape.category).category
     if not session.library.shape(parent.shape_id).surfaces:
@@ -157,7 +157,7 @@ def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, 3], direct
     size = np.asarray(shape.size_m)
     usable = [h for h in hits_along(origin, direction, places) if fits(h.place, size, h.point, np.eye(3))]
     # A plant clicked onto a wall is not meant to hang there, a picture clicked onto the floor may well stand.
-    hit = next((h for h in usable if h.place.upward or hung), None) or _on_ground(origin, direction)
+    hit = next((h for h in usable if h.place.upward or hung), None) or _ground_hit(origin, direction)
     if hit is None:
         raise EditRefused("nothing there can support it; click the floor, a table or a wall")
     client.doing = None
@@ -175,8 +175,8 @@ def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, 3], direct
     _used(client, shape_id)
 
 
-def _on_ground(origin: np.ndarray, direction: np.ndarray) -> Hit | None:
-    """Where there is no floor yet: level ground at height 0."""
+def _ground_hit(origin: np.ndarray, direction: np.ndarray) -> Hit | None:
+    """Hit on level ground at height 0, where there is no floor yet."""
     big = 50.0
     outline = np.array([[-big, -big, 0.0], [big, -big, 0.0], [big, big, 0.0], [-big, big, 0.0]])
     ground = SupportTarget(

@@ -198,13 +198,13 @@ def _glide(session: EditorSession, start: Scene, final: Scene, progress: Progres
     frames = int(GLIDE_S / PREVIEW_EVERY_S)
     for frame in range(1, frames + 1):
         share = 0.5 - 0.5 * np.cos(np.pi * frame / frames)
-        between = {o.id: _between(start.object(o.id).pose, o.pose, float(share)) for o in final.objects}
+        between = {o.id: _interpolate_pose(start.object(o.id).pose, o.pose, float(share)) for o in final.objects}
         session.ui_thread.post(partial(session.viewport.preview, between), key="preview")
         time.sleep(PREVIEW_EVERY_S)
         progress.report(1.0, "Settling")
 
 
-def _between(a: Pose, b: Pose, share: float) -> Pose:
+def _interpolate_pose(a: Pose, b: Pose, share: float) -> Pose:
     turn = rotation_vector(b.R_world_object @ a.R_world_object.T)
     R = rotation_from_vector(share * turn) @ a.R_world_object
     u, _singular, vt = np.linalg.svd(R)

@@ -65,7 +65,7 @@ class AllProjects:
             f'<option value="{key}" {"selected" if key == self._sort else ""}>{text(_(words))}</option>'
             for key, words in SORTS.items()
         )
-        bin_of = "".join(_binned(place) for place in manage.in_bin(self._client.session.projects_dir))
+        bin_of = "".join(_binned(place) for place in manage.binned_projects(self._client.session.projects_dir))
         bin_of = f"<details><summary>{text(_('Bin'))}</summary>{bin_of}</details>" if bin_of else ""
         title = text(_("All projects"))
         return (
@@ -117,7 +117,7 @@ class AllProjects:
 
     def _restore(self, address: str) -> None:
         session = self._client.session
-        place = next((p for p in manage.in_bin(session.projects_dir) if manage.address_of(p) == address), None)
+        place = next((p for p in manage.binned_projects(session.projects_dir) if manage.address_of(p) == address), None)
         if place is None:
             raise EditRefused("that project no longer exists")
         folder = manage.out_of_bin(place, session.projects_dir)

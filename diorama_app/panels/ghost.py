@@ -53,7 +53,7 @@ class PlacingGhost:
             if wanted is not None:
                 scene = self._client.viser_client.scene
                 self._node = scene.add_glb(NODE, session.shapes.glb(wanted), position=FAR_M, cast_shadow=False)
-        about = None if wanted is None else where_it_goes(session.scene, session.library, session.library.shape(wanted))
+        about = None if wanted is None else ghost_data(session.scene, session.library, session.library.shape(wanted))
         state = json.dumps(about, separators=(",", ":"))
         if state != (self._told or "null"):
             self._told = state
@@ -70,8 +70,8 @@ class PlacingGhost:
             place_at(self._client, doing.shape_id, origin, direction)
 
 
-def where_it_goes(scene: Scene, library: ShapeLibrary, shape: Shape) -> dict[str, Any]:
-    """What a page needs to know to show a shape where a click would put it.
+def ghost_data(scene: Scene, library: ShapeLibrary, shape: Shape) -> dict[str, Any]:
+    """Data with which a page shows a shape where a click would put it.
 
     Returns:
         The node, the shape's size, whether it may hang, whether it is a door, where the photo's camera is seen from

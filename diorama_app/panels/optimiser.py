@@ -291,15 +291,15 @@ def report_html(run: LayoutRun) -> str:
     costs = "".join(_row(n, report.before.get(n), report.after[n]) for n in names if n not in FIGURES)
     reasons = "".join(f"<p>{library_text(reason)}</p>" for reason in report.reasons)
     why = f'<div class="card warn" style="margin-top:6px">{reasons}</div>' if reasons else ""
-    words = "".join(f"<p>{text(line)}</p>" for line in _in_sentences(report.before, report.after))
+    words = "".join(f"<p>{text(line)}</p>" for line in _summary_sentences(report.before, report.after))
     tables = f"<table>{figures}</table>" + (f"<h4>{text(_('Costs'))}</h4><table>{costs}</table>" if costs else "")
     title = _("Before → after ({seconds:.1f} s)").format(seconds=report.seconds)
     figures = f"<details><summary class='dim'>{text(title)}</summary>{tables}</details>"
     return f"<h4>{text(_('Result'))}</h4>{words}{why}{figures}"
 
 
-def _in_sentences(before: Mapping[str, float], after: Mapping[str, float]) -> Iterator[str]:
-    """What a person wants to know first: overlaps, supports, and how far things moved."""
+def _summary_sentences(before: Mapping[str, float], after: Mapping[str, float]) -> Iterator[str]:
+    """Sentences about overlaps, supports, and how far objects moved."""
     if "overlapping_pairs" in after and "overlapping_pairs" in before:
         was, now = round(before["overlapping_pairs"]), round(after["overlapping_pairs"])
         pairs = plural("{count} pair of objects overlaps", "{count} pairs of objects overlap", now)

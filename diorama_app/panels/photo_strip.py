@@ -58,7 +58,7 @@ class PhotoStrip:
             for p in session.further_photos
         )
         further = client.further_photo
-        about = "" if further is None else _about(further)
+        about = "" if further is None else _photo_hint(further)
         self._html.show(f'<h4>{text(_("Photos of this room"))}</h4><div class="grid">{first}{rest}</div>{about}')
 
     def _tile(self, name: str, label: str, rgb: UInt8[np.ndarray, "h w 3"], *, on: bool, joined: bool) -> str:
@@ -110,8 +110,8 @@ class PhotoStrip:
         client.refresh()
 
 
-def _about(photo: FurtherPhoto) -> str:
-    """What is to do with the chosen photo."""
+def _photo_hint(photo: FurtherPhoto) -> str:
+    """Hint on what to do with the chosen photo."""
     if photo.inputs.photo.equirectangular:
         return f'<p class="dim" style="margin-top:6px">{text(_(ALL_ROUND))}</p>'
     if photo.camera is None:

@@ -10,7 +10,7 @@ import viser
 from diorama_app.commands import edit as editing
 from diorama_app.panels.fields import on_change, show_if, show_value
 from diorama_app.session.client import Client
-from diorama_app.session.units import UNITS, Unit, format_length, in_unit, parse_length
+from diorama_app.session.units import UNITS, Unit, format_length, parse_length, to_unit
 from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, fold_button, library_text, text
 from diorama_core.arrangement.explain import reason_text, strongest
@@ -246,7 +246,7 @@ def _grid(cells: str) -> str:
 
 
 def _length(metres: float, unit: Unit) -> str:
-    return format_length(metres, unit) if unit == "ft-in" else f"{in_unit(metres, unit) + 0.0:g}"
+    return format_length(metres, unit) if unit == "ft-in" else f"{to_unit(metres, unit) + 0.0:g}"
 
 
 def _degrees(words: str) -> float:

@@ -96,9 +96,9 @@ def understood(content: bytes, name: str, photo_size: tuple[int, int] | None) ->
         path.write_bytes(content)
         head = head_of(path)
         if not head.is_zip or is_one_file(head):
-            return Dropped(_of_file(path, path.name, photo_size))
+            return Dropped(_file_readings(path, path.name, photo_size))
         with unpacked(path, MAX_BYTES) as inside:
-            return _of_folder(inside, path.name, photo_size)
+            return _classify_folder(inside, path.name, photo_size)
 
 
 def is_one_file(head: FileHead) -> bool:
@@ -134,7 +134,7 @@ def _scene_form(head: FileHead) -> SceneForm | None:
 # -- one file -------------------------------------------------------------------------------------------------------
 
 
-def _of_file(path: Path, name: str, photo_size: tuple[int, int] | None) -> tuple[Reading, ...]:
+def _file_readings(path: Path, name: str, photo_size: tuple[int, int] | None) -> tuple[Reading, ...]:
     """The readings of a file.
 
     Raises:
@@ -158,12 +158,12 @@ def _of_file(path: Path, name: str, photo_size: tuple[int, int] | None) -> tuple
             raise
         return solid
     return (
-        *(_of_sort(what, name) for what in readings),
+        *(_sort_reading(what, name) for what in readings),
         *(r for r in solid if r.action != "scene" or _is_readable(path)),
     )
 
 
-def _of_sort(what: Recognised, name: str) -> Reading:
+def _sort_reading(what: Recognised, name: str) -> Reading:
     if what.sort == "photo":
         return Reading("photo", what.words, (DroppedPhoto(name),))
     return Reading("inputs", f"{what.words} of the open photo", inputs=((what.sort, name),))
@@ -212,10 +212,10 @@ def _may_be_room(content: SceneParts) -> bool:
 # -- several files --------------------------------------------------------------------------------------------------
 
 
-def _of_folder(folder: Path, name: str, photo_size: tuple[int, int] | None) -> Dropped:
+def _classify_folder(folder: Path, name: str, photo_size: tuple[int, int] | None) -> Dropped:
     root = content_of(folder)
     if root.is_file():
-        return Dropped(_of_file(root, root.relative_to(folder).as_posix(), photo_size))
+        return Dropped(_file_readings(root, root.relative_to(folder).as_posix(), photo_size))
     head = head_of(root)
     flat = _is_flat(head)
     scene = None if flat else _scene_form(head)
@@ -228,11 +228,11 @@ def _of_folder(folder: Path, name: str, photo_size: tuple[int, int] | None) -> D
     heads = {n: head_of(folder / n) for n in names}
     models = [] if flat else [n for n, h in heads.items() if h.size and _model_form(h) is not None]
     if models:
-        return _of_models(models, heads, names)
-    return _of_photos(folder, name, names, photo_size)
+        return _classify_models(models, heads, names)
+    return _classify_photos(folder, name, names, photo_size)
 
 
-def _of_models(models: Sequence[str], heads: dict[str, FileHead], names: Sequence[str]) -> Dropped:
+def _classify_models(models: Sequence[str], heads: dict[str, FileHead], names: Sequence[str]) -> Dropped:
     forms = {form.name for n in models if (form := _model_form(heads[n])) is not None}
     textured = any(f in _REFER_TO_PICTURES for f in forms)
     beside = (".mtl", ".bin", ".jpg", ".jpeg", ".png", ".tga", ".webp", ".ktx2", ".bmp", ".tif") if textured else ()
@@ -241,7 +241,7 @@ def _of_models(models: Sequence[str], heads: dict[str, FileHead], names: Sequenc
     return Dropped((Reading("models", f"{count} ({', '.join(sorted(forms))}) for the library"),), tuple(out))
 
 
-def _of_photos(folder: Path, name: str, names: Sequence[str], photo_size: tuple[int, int] | None) -> Dropped:
+def _classify_photos(folder: Path, name: str, names: Sequence[str], photo_size: tuple[int, int] | None) -> Dropped:
     poses = next((n for n in names if Path(n).name in _POSES), "")
     sorts: dict[str, tuple[Recognised, ...]] = {}
     out: list[str] = []

@@ -98,7 +98,7 @@ def photos_of(folder: Path) -> tuple[tuple[FolderPhoto, ...], tuple[str, ...]]:
     if not photos:
         raise InputError(f"{folder} holds no photo; JPEG, PNG, HEIC, WebP and TIFF are read, among others")
     stems = Counter(p.stem for p in photos)
-    folder_photos = tuple(FolderPhoto(p, p.stem if stems[p.stem] == 1 else p.name, _beside(p)) for p in photos)
+    folder_photos = tuple(FolderPhoto(p, p.stem if stems[p.stem] == 1 else p.name, _side_files(p)) for p in photos)
     alone = sorted(beside - {path for photo in folder_photos for _, path in photo.side_files})
     remarks = tuple(f"{p.name}: there is no photo of this name; it is not used" for p in alone)
     others = [p.name for p in names if p not in beside and p not in photos and p.suffix.lower() not in DATA]
@@ -141,7 +141,7 @@ def _side_of(path: Path) -> str | None:
     return next((kind for kind, ends in SIDE_FILES.items() if path.name.endswith(ends)), None)
 
 
-def _beside(photo: Path) -> tuple[tuple[str, Path], ...]:
+def _side_files(photo: Path) -> tuple[tuple[str, Path], ...]:
     here = [(kind, photo.with_name(photo.stem + end)) for kind, ends in SIDE_FILES.items() for end in ends]
     side_files = [(kind, path) for kind, path in here if path.is_file()]
     twice = next((k for k, n in Counter(kind for kind, _ in side_files).items() if n > 1), None)

@@ -45,7 +45,7 @@ def problems(scene: Scene, library: ShapeLibrary, collisions: Collisions) -> Pro
             continue
         if floats(scene, library, item):
             found.setdefault(item.id, []).append(FLOATS)
-        if outside_room(parts.get(rooms.get(item.id, ""), scene), item):
+        if is_outside_room(parts.get(rooms.get(item.id, ""), scene), item):
             found.setdefault(item.id, []).append(OUTSIDE)
     return {i: tuple(sorted(words)) for i, words in found.items()}
 
@@ -82,8 +82,8 @@ def _is_beside(foot: Float[np.ndarray, 3], parent: SceneObject) -> bool:
     return bool((local[:2] > parent.size_m[:2] / 2 + BESIDE_M).any())
 
 
-def outside_room(scene: Scene, item: SceneObject) -> bool:
-    """Whether an object's middle is beyond the floor's outline, or it sticks far through a wall."""
+def is_outside_room(scene: Scene, item: SceneObject) -> bool:
+    """True if an object's middle is beyond the floor's outline, or it sticks far through a wall."""
     corners = item.corners_world
     for plane in scene.architecture.planes:
         within = plane.polygon.min(axis=0) - 0.2 <= item.pose.position

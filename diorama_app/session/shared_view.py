@@ -113,7 +113,7 @@ class SharedView:
         """Draw the cameras of all photos for one client; a click on one is told to `on_photo_camera`."""
         camera, photo = self._shown.scene.camera, self._shown.photo
 
-        def through(name: str | None) -> Callable[[], None]:
+        def look_through(name: str | None) -> Callable[[], None]:
             def look() -> None:
                 if self.on_photo_camera is not None:
                     ask = self.on_photo_camera
@@ -122,12 +122,14 @@ class SharedView:
             return look
 
         cameras = (
-            [] if camera is None else [PhotoCamera("", camera, None if photo is None else photo.rgb, through(None))]
+            []
+            if camera is None
+            else [PhotoCamera("", camera, None if photo is None else photo.rgb, look_through(None))]
         )
         for number, further in enumerate(self._shown.further_photos):
             if further.camera is not None:
                 rgb = further.inputs.photo.rgb
-                cameras.append(PhotoCamera(f"_{number}", further.camera, rgb, through(further.name)))
+                cameras.append(PhotoCamera(f"_{number}", further.camera, rgb, look_through(further.name)))
         client.view.photo.show_cameras(cameras)
 
     def _draw(self, what: str, draw: Callable[[], None]) -> None:

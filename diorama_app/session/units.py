@@ -65,7 +65,7 @@ def format_length(metres: float, unit: Unit) -> str:
     return f"{sign}{feet}' {inches}{_fraction(fraction)}\"" if feet else f'{sign}{inches}{_fraction(fraction)}"'
 
 
-def in_unit(metres: float, unit: Unit) -> float:
+def to_unit(metres: float, unit: Unit) -> float:
     """The number that a field in metres or centimetres shows."""
     return round(metres, 3) if unit == "m" else round(100 * metres, 1)
 

@@ -122,7 +122,7 @@ def _draw_line(
     ends_world: Float[np.ndarray, "2 3"],
     colour: tuple[int, int, int, int],
 ) -> None:
-    ends = _in_front(camera.to_camera(ends_world))
+    ends = _clip_to_front(camera.to_camera(ends_world))
     if ends is None:
         return
     uv = ends[:, :2] / ends[:, 2:] * (scaled.fx, scaled.fy) + (scaled.cx, scaled.cy)
@@ -130,7 +130,7 @@ def _draw_line(
     cv2.line(picture, a, b, colour, LINE_PX, cv2.LINE_AA)
 
 
-def _in_front(ends: Float[np.ndarray, "2 3"]) -> Float[np.ndarray, "2 3"] | None:
+def _clip_to_front(ends: Float[np.ndarray, "2 3"]) -> Float[np.ndarray, "2 3"] | None:
     """The part of a line (camera axes) that is in front of the camera."""
     near = ends[:, 2] < NEAR_M
     if near.all():

@@ -120,7 +120,7 @@ class SeenOutline:
         x1, y1, x2, y2 = seen.box
         beyond = tips + directions * max(0.06 * max(x2 - x1, y2 - y1), 2.0)
         cells = _nearest_cells(seen, beyond)
-        known = (seen.weight[cells] > 0.6) & _inside(beyond, mask.shape)
+        known = (seen.weight[cells] > 0.6) & _are_inside(beyond, mask.shape)
         return cls(directions, reach, known, settings)
 
 
@@ -132,7 +132,7 @@ def _nearest_cells(seen: Observed, pixels: Float[np.ndarray, "k 2"]) -> np.ndarr
     return row * n + column
 
 
-def _inside(pixels: Float[np.ndarray, "k 2"], shape: tuple[int, ...]) -> Bool[np.ndarray, " k"]:
+def _are_inside(pixels: Float[np.ndarray, "k 2"], shape: tuple[int, ...]) -> Bool[np.ndarray, " k"]:
     x, y = pixels.T
     return (x >= 1) & (y >= 1) & (x < shape[1] - 1) & (y < shape[0] - 1)
 

@@ -81,7 +81,7 @@ class OutlineMap:
         x1, y1, x2, y2 = self.seen.window.bounds_px
         cells = self.seen.window.cells
         place = (pixels - (x1, y1)) / ((x2 - x1) / cells, (y2 - y1) / cells) - 0.5
-        covered, known = (_between(v.reshape(cells, cells), place) for v in (self.seen.covered, self.seen.weight))
+        covered, known = (_bilinear(v.reshape(cells, cells), place) for v in (self.seen.covered, self.seen.weight))
         inside = in_front & (covered >= self.settings.covered)
         shape = points_world.shape[:-1]
         return inside.reshape(shape), (in_front & (known >= self.settings.known) | inside).reshape(shape)
@@ -207,7 +207,7 @@ def _widened(
     return np.maximum(np.round([width, width, size_m[2]], 3), 1e-3)
 
 
-def _between(grid: Float[np.ndarray, "r c"], place: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, " n"]:
+def _bilinear(grid: Float[np.ndarray, "r c"], place: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, " n"]:
     """A grid's values between its cells' centres; beyond them nothing is covered and nothing known."""
     rows, columns = grid.shape
     padded = np.pad(grid, 1)

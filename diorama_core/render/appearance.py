@@ -276,20 +276,20 @@ def smooth_corner_normals(
     creased[owner[from_mean <= np.cos(CREASE_RAD / 2)]] = True
     sums = of_vertex.take(owner, axis=0)
     rest = np.flatnonzero(creased.take(owner))
-    sums[rest] = _within_crease(owner[rest], rest // 3, weighted, normals, CREASE_RAD)
+    sums[rest] = _crease_sums(owner[rest], rest // 3, weighted, normals, CREASE_RAD)
     lost = dot(sums, sums) < 1e-30
     sums[lost] = np.repeat(normals, 3, axis=0)[lost]
     return unit(sums).astype(np.float32)
 
 
-def _within_crease(
+def _crease_sums(
     owner: Int[np.ndarray, " n"],
     face: Int[np.ndarray, " n"],
     weighted: Float[np.ndarray, "m 3"],
     normals: Float[np.ndarray, "m 3"],
     crease_rad: float,
 ) -> Float[np.ndarray, "n 3"]:
-    """For corners of given vertices and faces the sum of the faces at the vertex that meet theirs within the angle."""
+    """Sums for corners of given vertices and faces of the faces at the vertex that meet theirs within the angle."""
     first, second = _pairs_of_equal(owner)
     first_face, second_face = face.take(first), face.take(second)
     near = dot(normals.take(first_face, axis=0), normals.take(second_face, axis=0)) > np.cos(crease_rad)

@@ -102,14 +102,14 @@ def _spread(
                 h, w = (min(a, b) for a, b in zip(coarse.found[target].shape, fine.found[below::2, right::2].shape))
                 here = (slice(below, below + 2 * h, 2), slice(right, right + 2 * w, 2))
                 target = (slice(target[0].start, target[0].start + h), slice(dx, dx + w))
-                fits = (sure[target] & _on_one_surface(fine.part(*here), coarse.part(*target))).astype(np.float32)
+                fits = (sure[target] & _is_same_surface(fine.part(*here), coarse.part(*target))).astype(np.float32)
                 total[here] += fits
                 mixed[here] += fits[..., None] * smooth[target]
     return mixed / np.maximum(total, 1)[..., None], total > 0
 
 
-def _on_one_surface(pixel: Grid, beside: Grid) -> Bool[np.ndarray, "h w"]:
-    """Where the pixels beside continue the surfaces of the given ones."""
+def _is_same_surface(pixel: Grid, beside: Grid) -> Bool[np.ndarray, "h w"]:
+    """True where the pixels beside continue the surfaces of the given ones."""
     leave = np.abs(dot(beside.points - pixel.points, pixel.normals))
     return beside.found & pixel.found & (leave < 3 * pixel.pixel_m) & (dot(beside.normals, pixel.normals) > SAME_TURN)
 

@@ -70,7 +70,7 @@ def picture(
     """
     progress.report(0.0, "gathering meshes and materials")
     source = scene_view(scene, view, size)
-    without = _behind(scene, source)
+    without = _ids_seen_from_behind(scene, source)
     opened = with_openings(scene)
     world = scene_world(opened, library, textures=textures, photographed=photographed, without=without)
     lit_world, blockers = lit(scene, opened, library, world, source)
@@ -109,7 +109,7 @@ def instances_seen(
         size: Width and height in pixels.
     """
     source = scene_view(scene, view, size)
-    world = scene_world(with_openings(scene), library, without=_behind(scene, source))
+    world = scene_world(with_openings(scene), library, without=_ids_seen_from_behind(scene, source))
     hits = world.caster.first_hits(source.rays(pixel_centres(source.width, source.height)))
     shown = np.full(hits.found.shape, -1, dtype=np.int32)
     shown[hits.found] = world.instances(hits.triangle[hits.found])
@@ -261,17 +261,17 @@ def _axis(view: View) -> Float[np.ndarray, "3"]:
     return T[:3, 2] if abs(T[2, 2]) < 0.99 else -T[:3, 1]
 
 
-def _towards_viewer(view: View, point_world: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
+def _viewer_direction(view: View, point_world: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
     if isinstance(view, PinholeView):
         return view.camera.position - point_world
     return -view.T_world_camera[:3, 2]
 
 
-def _behind(scene: Scene, view: View) -> frozenset[str]:
+def _ids_seen_from_behind(scene: Scene, view: View) -> frozenset[str]:
     """Ids of planes seen from behind, and of everything that hangs on them."""
     hidden: set[str] = set()
     for plane in scene.architecture.planes:
-        if plane.normal @ _towards_viewer(view, plane.centre) < -1e-6:
+        if plane.normal @ _viewer_direction(view, plane.centre) < -1e-6:
             hidden.add(plane.id)
     for edge in scene.supports:
         if edge.parent in hidden and edge.relation == "mounted on":

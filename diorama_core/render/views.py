@@ -94,7 +94,7 @@ def render_shape(
     shot = shoot(alone, alone.shadow_caster(), camera, light, STUDIO_EFFORT)
     hung = category(shape.category).mount in ("wall", "ceiling")
     shadow = np.zeros(shot.coverage.shape, np.float32) if hung else _shadow(shape, alone, light, camera, STUDIO_EFFORT)
-    return _over(shot, shadow)
+    return _composite(shot, shadow)
 
 
 def four_views(library: ShapeLibrary, shape_id: str, side_px: int = 360) -> Image.Image:
@@ -147,7 +147,7 @@ def _resized(camera: Camera, width: int, height: int) -> Camera:
     return Camera(camera.intrinsics.scaled(width, height), camera.T_world_camera)
 
 
-def _over(shot: Shot, shadow: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 4"]:
+def _composite(shot: Shot, shadow: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 4"]:
     """The shape over its shadow, as colour and opacity."""
     covered = shot.coverage[..., None]
     colour = tone_mapped(EXPOSURE * shot.radiance / np.maximum(covered, 1e-3))

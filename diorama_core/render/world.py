@@ -357,8 +357,8 @@ def _bilinear(
     x, y = uv[:, 0] * width - 0.5, (1 - uv[:, 1]) * height - 0.5
     x0, y0 = np.floor(x).astype(np.int64), np.floor(y).astype(np.int64)
     fx, fy = (x - x0)[:, None].astype(np.float32), (y - y0)[:, None].astype(np.float32)
-    left, right = _within(x0, width, repeat)
-    top, bottom = _within(y0, height, repeat)
+    left, right = _texels(x0, width, repeat)
+    top, bottom = _texels(y0, height, repeat)
     texels = picture.reshape(height * width, -1)
     top, bottom = top * width, bottom * width
     above = texels.take(top + left, axis=0) * (1 - fx) + texels.take(top + right, axis=0) * fx
@@ -366,7 +366,7 @@ def _bilinear(
     return above * (1 - fy) + below * fy
 
 
-def _within(index: Int[np.ndarray, "n"], count: int, repeat: bool) -> tuple[Int[np.ndarray, "n"], Int[np.ndarray, "n"]]:
+def _texels(index: Int[np.ndarray, "n"], count: int, repeat: bool) -> tuple[Int[np.ndarray, "n"], Int[np.ndarray, "n"]]:
     """Rows or columns of texels, and those after them."""
     if not repeat:
         return np.minimum(np.maximum(index, 0), count - 1), np.minimum(np.maximum(index + 1, 0), count - 1)

@@ -355,13 +355,13 @@ def _best(
     """
     share, kinds = settings.own_evidence, settings.kinds if named else settings.kinds_of_unnamed
     mixed = {key: share * scores[key] + (1 - share) * of_group[key] for key in scores}
-    shared = _in_order(of_group)[: 3 * keep // 4]
-    keys = [*shared, *(key for key in _in_order(mixed) if key not in shared)][:keep]
-    of_kinds = {kind_of[key]: key for key in reversed(_in_order(mixed))}
-    firsts = _in_order({key: mixed[key] for key in of_kinds.values()})[:kinds]
+    shared = _ranked_keys(of_group)[: 3 * keep // 4]
+    keys = [*shared, *(key for key in _ranked_keys(mixed) if key not in shared)][:keep]
+    of_kinds = {kind_of[key]: key for key in reversed(_ranked_keys(mixed))}
+    firsts = _ranked_keys({key: mixed[key] for key in of_kinds.values()})[:kinds]
     keys = [*firsts, *(key for key in keys if key not in firsts)][:keep]
-    return tuple((key, float(mixed[key])) for key in _in_order({key: mixed[key] for key in keys}))
+    return tuple((key, float(mixed[key])) for key in _ranked_keys({key: mixed[key] for key in keys}))
 
 
-def _in_order(scores: dict[str, float]) -> list[str]:
+def _ranked_keys(scores: dict[str, float]) -> list[str]:
     return sorted(scores, key=lambda key: (-scores[key], key))

@@ -102,7 +102,7 @@ def kinds_together(
         for kind, share in of_one.items():
             row[index[kind]] = share
     edges = [_edge(of_one) for of_one in lying or [None] * len(alone)]
-    explained = [_in_room(unary * usual, carrier_of, edges) for usual in _rooms()]
+    explained = [_room_marginals(unary * usual, carrier_of, edges) for usual in _rooms()]
     says = SETTINGS.room_trust * np.array([log for _, log in explained])
     weight = np.exp(says - says.max())
     mixed = np.einsum("t,tnk->nk", weight / weight.sum(), np.stack([beliefs for beliefs, _ in explained]))
@@ -120,7 +120,7 @@ def _edge(lying: Lying | None) -> Float[np.ndarray, "k k"]:
     return (1.0 - SETTINGS.lies_on_it) + SETTINGS.lies_on_it * other_shares
 
 
-def _in_room(
+def _room_marginals(
     unary: Float[np.ndarray, "n k"], carrier_of: Sequence[int | None], edges: Sequence[Float[np.ndarray, "k k"]]
 ) -> tuple[Float[np.ndarray, "n k"], float]:
     """Marginals in one type of room, and the logarithm of how well it explains everything."""

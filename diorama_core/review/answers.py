@@ -36,14 +36,14 @@ def answered(scene: Scene, library: ShapeLibrary, question_id: str, value: str) 
     if subject not in SUBJECTS or not scene.has_object(object_id):
         raise EditRefused(f"nothing is asked under {question_id!r} now; ask for the questions again")
     if subject == "presence":
-        return _of_presence(scene, library, object_id, value)
+        return _answer_presence(scene, library, object_id, value)
     if subject == "kind":
-        return _of_kind(scene, library, object_id, value)
+        return _answer_kind(scene, library, object_id, value)
     if subject == "front":
-        return _of_front(scene, object_id, value)
+        return _answer_front(scene, object_id, value)
     if subject == "scale":
         return rescale_to_length(scene, *lengths(scene, object_id, value))
-    return _of_supporter(scene, library, object_id, value)
+    return _answer_supporter(scene, library, object_id, value)
 
 
 def lengths(scene: Scene, object_id: str, value: str) -> tuple[float, float]:
@@ -59,14 +59,14 @@ def lengths(scene: Scene, object_id: str, value: str) -> tuple[float, float]:
         raise EditRefused(f"{value!r} is no length; answer with a height in metres, such as 2.03") from None
 
 
-def _of_presence(scene: Scene, library: ShapeLibrary, object_id: str, value: str) -> Scene:
+def _answer_presence(scene: Scene, library: ShapeLibrary, object_id: str, value: str) -> Scene:
     if value == NO:
         return without_objects(scene, library, (object_id,))[0]
     _need(value, (YES,), f"{YES} or {NO}")
     return _believed(scene, object_id, replace(_belief(scene, object_id), present=1.0))
 
 
-def _of_kind(scene: Scene, library: ShapeLibrary, object_id: str, kind: str) -> Scene:
+def _answer_kind(scene: Scene, library: ShapeLibrary, object_id: str, kind: str) -> Scene:
     _need(kind, {c.name for c in CATEGORIES}, "a kind of object, such as armchair")
     item = scene.object(object_id)
     if record_of(library, item.shape_id).category != kind:
@@ -95,7 +95,7 @@ def candidate_of(library: ShapeLibrary, item: SceneObject, kind: str) -> Candida
     return Candidate(shape.id, shape.size_m, 0.0, replace(item.pose, scale=np.full(3, scale)))
 
 
-def _of_front(scene: Scene, object_id: str, turn: str) -> Scene:
+def _answer_front(scene: Scene, object_id: str, turn: str) -> Scene:
     _need(turn, TURNS, ", ".join(TURNS[:-1]) + f" or {TURNS[-1]}")
     pose, quarters = scene.object(object_id).pose, TURNS.index(turn)
     if quarters:
@@ -104,7 +104,7 @@ def _of_front(scene: Scene, object_id: str, turn: str) -> Scene:
     return _believed(scene, object_id, _belief(scene, object_id).with_front())
 
 
-def _of_supporter(scene: Scene, library: ShapeLibrary, object_id: str, parent_id: str) -> Scene:
+def _answer_supporter(scene: Scene, library: ShapeLibrary, object_id: str, parent_id: str) -> Scene:
     if not scene.has_object(parent_id) and not scene.has_plane(parent_id):
         raise EditRefused(f"the scene has no {parent_id!r}; answer with the id of an object, a wall, floor or ceiling")
     edge = scene.support_of(object_id)

@@ -128,13 +128,15 @@ def questions(scene: Scene) -> tuple[Question, ...]:
 
     What a person has decided since the build, by an answer or by an edit, is not asked.
     """
-    candidates = [q for item in scene.objects if item.belief is not None for q in _about(scene, item, item.belief)]
+    candidates = [
+        q for item in scene.objects if item.belief is not None for q in _object_questions(scene, item, item.belief)
+    ]
     length = _known_length(scene)
     candidates += [] if length is None else [length]
     return tuple(sorted((q for q in candidates if q.gain >= LEAST_GAIN), key=lambda q: (-q.gain, q.id)))
 
 
-def _about(scene: Scene, item: SceneObject, belief: Belief) -> Iterator[Question]:
+def _object_questions(scene: Scene, item: SceneObject, belief: Belief) -> Iterator[Question]:
     edge = scene.support_of(item.id)
     if belief.present < 1.0:
         # Where it is no object, what is right afterwards is that nothing is there.

@@ -76,7 +76,7 @@ def set_ceiling_height(scene: Scene, height_m: float) -> Scene:
         if plane.role == "floor":
             return plane
         polygon = plane.polygon.copy()
-        top = _at_top(plane, ceilings) if plane.role == "wall" else np.ones(len(polygon), dtype=bool)
+        top = _are_at_top(plane, ceilings) if plane.role == "wall" else np.ones(len(polygon), dtype=bool)
         polygon[top, 2] += rise
         return replace(plane, polygon=polygon)
 
@@ -210,7 +210,7 @@ def _with_plane_moved(planes: tuple[Plane, ...], moved: Plane, distance_m: float
             return replace(plane, polygon=np.array([slide(c) for c in plane.polygon]))
         if abs(float(plane.normal @ moved.normal)) >= PARALLEL:
             return plane
-        on = _on_plane(plane.polygon, moved)
+        on = _lie_on_plane(plane.polygon, moved)
         corners: list[np.ndarray] = []
         for index, corner in enumerate(plane.polygon):
             stays = len(staying) > 0 and float(np.linalg.norm(staying - corner, axis=1).min()) < JOINED_M
@@ -251,15 +251,15 @@ def _closing(wall: Plane, wall_id: str, edge: Points, moved: Points, distance_m:
     return made if float(made.normal @ inward) > 0 else replace(made, polygon=polygon[::-1])
 
 
-def _on_plane(points: Points, plane: Plane) -> Bool[np.ndarray, "n"]:
-    """Which points lie on a plane, within the bounds of its polygon."""
+def _lie_on_plane(points: Points, plane: Plane) -> Bool[np.ndarray, "n"]:
+    """True for points on a plane, within the bounds of its polygon."""
     near = np.abs(points @ plane.normal - plane.offset) < JOINED_M
     low, high = plane.polygon.min(axis=0) - JOINED_M, plane.polygon.max(axis=0) + JOINED_M
     return np.asarray(near & ((points >= low) & (points <= high)).all(axis=1))
 
 
-def _at_top(wall: Plane, ceilings: tuple[Plane, ...]) -> Bool[np.ndarray, "n"]:
-    """Which corners of a wall end it above, at a ceiling or at its highest; those of its openings do not."""
+def _are_at_top(wall: Plane, ceilings: tuple[Plane, ...]) -> Bool[np.ndarray, "n"]:
+    """True for corners that end a wall above, at a ceiling or at its highest; those of its openings do not."""
     top = wall.polygon[:, 2] > float(wall.polygon[:, 2].max()) - JOINED_M
     for ceiling in ceilings:
         top |= np.abs(wall.polygon @ ceiling.normal - ceiling.offset) < JOINED_M

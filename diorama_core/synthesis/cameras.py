@@ -109,7 +109,7 @@ def _candidate(scene: Scene, rng: np.random.Generator, size: tuple[int, int], ho
     height = float(floor.centre[2]) + rng.uniform(*how.height_m)
     pitch, fov = rng.uniform(*how.pitch_rad), rng.uniform(*how.fov_rad)
     roll = rng.normal(0.0, how.roll_rad)
-    if not _inside(position, outline, how.clearance_m) or np.linalg.norm(target - position) < 1.0:
+    if not _is_inside(position, outline, how.clearance_m) or np.linalg.norm(target - position) < 1.0:
         return None
     eye = np.array([*position, height])
     ceilings = room_around(scene, eye).architecture.by_role("ceiling")
@@ -181,8 +181,8 @@ def _apart(a: Camera, b: Camera) -> float:
     return float(np.linalg.norm(a.position - b.position) + turn)
 
 
-def _inside(point: np.ndarray, outline: Float[np.ndarray, "n 2"], margin_m: float) -> bool:
-    """Whether a point is in an outline (concave allowed) and `margin_m` from its edges."""
+def _is_inside(point: np.ndarray, outline: Float[np.ndarray, "n 2"], margin_m: float) -> bool:
+    """True for a point in an outline (concave allowed) and `margin_m` from its edges."""
     edges, offset = np.roll(outline, -1, axis=0) - outline, point - outline
     along = np.clip((offset * edges).sum(axis=1) / (edges * edges).sum(axis=1), 0, 1)
     distance = np.linalg.norm(offset - along[:, None] * edges, axis=1)

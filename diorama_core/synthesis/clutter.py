@@ -11,7 +11,7 @@ from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import having
 from diorama_core.synthesis.bodies import Item
 from diorama_core.synthesis.furnisher import Furnisher
-from diorama_core.synthesis.groups import on_top
+from diorama_core.synthesis.groups import put_on
 
 
 @dataclass(frozen=True)
@@ -135,26 +135,26 @@ def equip_desk(f: Furnisher, desk: str) -> None:
     screen = f.pick("monitor")
     if screen and f.chance(0.75):
         side = float(f.rng.uniform(-0.3, 0.3))
-        if on_top(f, desk, screen, np.array([-0.75, side])):
+        if put_on(f, desk, screen, np.array([-0.75, side])):
             keyboard = f.pick("keyboard")
             if keyboard:
-                on_top(f, desk, keyboard, np.array([0.45, side * 1.1]), float(f.rng.normal(0, 0.06)))
+                put_on(f, desk, keyboard, np.array([0.45, side * 1.1]), float(f.rng.normal(0, 0.06)))
             mouse = f.pick("mouse")
             if mouse:
-                on_top(f, desk, mouse, np.array([0.45, side * 1.1 + 0.42]), float(f.rng.normal(0, 0.2)))
+                put_on(f, desk, mouse, np.array([0.45, side * 1.1 + 0.42]), float(f.rng.normal(0, 0.2)))
     else:
         laptop = f.pick("laptop")
         if laptop:
-            on_top(f, desk, laptop, np.array([0.2, float(f.rng.uniform(-0.3, 0.3))]), float(f.rng.normal(0, 0.12)))
+            put_on(f, desk, laptop, np.array([0.2, float(f.rng.uniform(-0.3, 0.3))]), float(f.rng.normal(0, 0.12)))
     lamp = f.pick("lamp")
     if lamp and f.chance(0.6):
-        on_top(f, desk, lamp, np.array([-0.7, float(f.rng.choice([-0.9, 0.9]))]), float(f.rng.normal(0, 0.3)))
-    _on_floor_beside(f, desk, "computer", 0.45)
-    _on_floor_beside(f, desk, "trash can", 0.6)
+        put_on(f, desk, lamp, np.array([-0.7, float(f.rng.choice([-0.9, 0.9]))]), float(f.rng.normal(0, 0.3)))
+    _place_beside_desk(f, desk, "computer", 0.45)
+    _place_beside_desk(f, desk, "trash can", 0.6)
 
 
-def _on_floor_beside(f: Furnisher, desk: str, category: str, probability: float) -> None:
-    """On the floor under or next to a desk."""
+def _place_beside_desk(f: Furnisher, desk: str, category: str, probability: float) -> None:
+    """Place something on the floor under or next to a desk."""
     if not f.chance(probability):
         return
     item = f.pick(category, where=lambda s: s.size_m[2] < 0.6 and (category != "computer" or s.size_m[2] > 0.35))

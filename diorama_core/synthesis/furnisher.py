@@ -277,7 +277,7 @@ class Furnisher:
         if item.size_m[2] > face.clearance_m * scale[2] - 0.01:
             return None
         quad = footprint(item.size_m, xy_local, turn_rad)
-        if not _inside_convex(quad, face.polygon[:, :2] * scale[:2]):
+        if not _is_inside_convex(quad, face.polygon[:, :2] * scale[:2]):
             return None
         if any(quads_overlap(quad, other) for other in self._lying.get((parent_id, surface), [])):
             return None
@@ -356,7 +356,7 @@ class Furnisher:
             if item.category == "rug":
                 faces = self.surfaces(item.id)
                 local = (quad - item.pose.position[:2]) @ item.pose.R_world_object[:2, :2]
-                if faces and _inside_convex(local, faces[0].polygon[:, :2] * item.pose.scale[:2]):
+                if faces and _is_inside_convex(local, faces[0].polygon[:, :2] * item.pose.scale[:2]):
                     return item.id, float(item.pose.position[2] + item.size_m[2] / 2)
         return "floor", 0.0
 
@@ -376,8 +376,8 @@ def _rectangles_overlap(a: Float[np.ndarray, "4"], b: Float[np.ndarray, "4"]) ->
     return bool(a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3])
 
 
-def _inside_convex(points: Float[np.ndarray, "n 2"], polygon: Float[np.ndarray, "m 2"]) -> bool:
-    """Whether all points lie in a convex counter-clockwise polygon (to a tenth of a millimetre)."""
+def _is_inside_convex(points: Float[np.ndarray, "n 2"], polygon: Float[np.ndarray, "m 2"]) -> bool:
+    """True if all points lie in a convex counter-clockwise polygon (to a tenth of a millimetre)."""
     edges = np.roll(polygon, -1, axis=0) - polygon
     offset = points[:, None] - polygon
     cross = edges[:, 0] * offset[..., 1] - edges[:, 1] * offset[..., 0]

@@ -131,7 +131,7 @@ def _bedroom(f: Furnisher) -> None:
         desk = groups.workplace(f)
         if desk:
             equip_desk(f, desk)
-    _over_all(f, "dresser", "mirror", "picture")
+    _hang_over_all(f, "dresser", "mirror", "picture")
     groups.corner_objects(
         f, int(f.rng.integers(1, 3)), "plant", "basket", "floor lamp", "armchair", "laundry basket", "floor mirror"
     )
@@ -184,7 +184,7 @@ def _kitchen(f: Furnisher) -> None:
 def _dining(f: Furnisher) -> None:
     groups.dining(f, np.zeros(2), rug=f.chance(0.5))
     groups.storage(f, int(f.rng.integers(1, 3)), "sideboard", "cabinet", "dresser", "display cabinet", "bar cart")
-    _over_all(f, "sideboard", "picture", "mirror")
+    _hang_over_all(f, "sideboard", "picture", "mirror")
     groups.corner_objects(f, int(f.rng.integers(1, 3)), "plant", "floor lamp")
     groups.pictures(f, int(f.rng.integers(1, 4)))
     groups.ceiling_light(f)
@@ -241,8 +241,8 @@ def _corridor(f: Furnisher) -> None:
     add_door(f)
     add_door(f)
     groups.storage(f, int(f.rng.integers(2, 4)), "console table", "bench", "cabinet", "shoe cabinet", "bookshelf")
-    _over_all(f, "console table", "mirror", "picture")
-    _over_all(f, "dresser", "mirror", "picture")
+    _hang_over_all(f, "console table", "mirror", "picture")
+    _hang_over_all(f, "dresser", "mirror", "picture")
     _rug_in_the_middle(f)
     groups.corner_objects(
         f, int(f.rng.integers(1, 4)), "plant", "box", "basket", "floor lamp", "coat rack", "umbrella stand"
@@ -251,7 +251,7 @@ def _corridor(f: Furnisher) -> None:
     groups.ceiling_light(f)
 
 
-def _over_all(f: Furnisher, category: str, *hung: str) -> None:
+def _hang_over_all(f: Furnisher, category: str, *hung: str) -> None:
     for item in [o for o in f.objects if o.category == category]:
         groups.picture_above(f, item.id, *hung)
 

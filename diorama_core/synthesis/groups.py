@@ -124,7 +124,7 @@ def seating(f: Furnisher) -> str | None:
         rug_before(f, sofa)
     table = _low_table(f, sofa)
     _armchairs(f, sofa, table, facing_screen=screen is not None)
-    _beside_sofa(f, sofa)
+    _place_beside_sofa(f, sofa)
     if f.chance(0.8):
         picture_above(f, sofa)
     return sofa
@@ -207,11 +207,11 @@ def _television(f: Furnisher, stand: str, wall: WallLine, t: float) -> None:
             return
     item = f.pick("television", where=lambda s: s.size_m[0] > 0.12 and s.size_m[1] < width)
     if item:
-        on_top(f, stand, item, np.zeros(2))
+        put_on(f, stand, item, np.zeros(2))
 
 
-def on_top(f: Furnisher, parent: str, item: Item, share: Float[np.ndarray, "2"], turn_rad: float = 0.0) -> str | None:
-    """On the highest open surface, at a share (-1 to 1 front-back and left-right) of the free half extents.
+def put_on(f: Furnisher, parent: str, item: Item, share: Float[np.ndarray, "2"], turn_rad: float = 0.0) -> str | None:
+    """Place on the highest open surface, at a share (-1 to 1 front-back and left-right) of the free half extents.
 
     Args:
         f: the furnisher of the room.
@@ -249,7 +249,7 @@ def _armchairs(f: Furnisher, sofa: str, table: str | None, *, facing_screen: boo
                 break
 
 
-def _beside_sofa(f: Furnisher, sofa: str) -> None:
+def _place_beside_sofa(f: Furnisher, sofa: str) -> None:
     body = f.object(sofa)
     at = wall_at_back(f, sofa)
     if at is None:
@@ -260,10 +260,10 @@ def _beside_sofa(f: Furnisher, sofa: str) -> None:
         if item is None:
             continue
         t = at[1] + side * (body.size_m[1] / 2 + item.size_m[1] / 2 + 0.06)
-        f.against_wall(item, walls=[at[0]], t_m=t, free_front_m=0.0, gap_m=0.1) if _within(t, item, at[0]) else None
+        f.against_wall(item, walls=[at[0]], t_m=t, free_front_m=0.0, gap_m=0.1) if _fits_wall(t, item, at[0]) else None
 
 
-def _within(t: float, item: Item, wall: WallLine) -> bool:
+def _fits_wall(t: float, item: Item, wall: WallLine) -> bool:
     return bool(item.size_m[1] / 2 + WALL_GAP_M < t < wall.length_m - item.size_m[1] / 2 - WALL_GAP_M)
 
 
@@ -412,7 +412,7 @@ def _night_stands(f: Furnisher, bed: str) -> list[str]:
     placed = []
     for side in (-1.0, 1.0):
         t = at[1] + side * (f.object(bed).size_m[1] / 2 + item.size_m[1] / 2 + 0.05)
-        if _within(t, item, at[0]):
+        if _fits_wall(t, item, at[0]):
             name = f.against_wall(item, walls=[at[0]], t_m=t, free_front_m=0.25)
             placed += [name] if name else []
     return placed
@@ -433,7 +433,7 @@ def row_along_wall(f: Furnisher, wall: WallLine, categories: tuple[str, ...], st
         if item is None:
             continue
         middle = t + item.size_m[1] / 2
-        if not _within(middle, item, wall):
+        if not _fits_wall(middle, item, wall):
             continue
         name = f.against_wall(item, walls=[wall], t_m=middle, free_front_m=0.7)
         if name:

@@ -88,13 +88,13 @@ class RoomPlan(ArrayValue):
 
     def architecture(self, textures: tuple[str | None, str | None, str | None] = (None, None, None)) -> Architecture:
         """Floor, walls and ceiling; `textures` name the finishes of floor, walls and ceiling."""
-        planes = [Plane("floor", "floor", _at(self.outline, 0.0), texture=textures[0])]
+        planes = [Plane("floor", "floor", _lift(self.outline, 0.0), texture=textures[0])]
         for wall in self.walls:
             top = self._top_of(wall)
-            corners = np.concatenate([_at(np.stack([wall.start, wall.end]), 0.0), _at(top, self.roof_m(top))])
+            corners = np.concatenate([_lift(np.stack([wall.start, wall.end]), 0.0), _lift(top, self.roof_m(top))])
             planes.append(Plane(wall.id, "wall", corners, texture=textures[1]))
         planes += [
-            Plane("ceiling" if k == 0 else "sloping_ceiling", "ceiling", _at(part, self.roof_m(part))[::-1],
+            Plane("ceiling" if k == 0 else "sloping_ceiling", "ceiling", _lift(part, self.roof_m(part))[::-1],
                   texture=textures[2])
             for k, part in enumerate(self._ceilings())
         ]  # fmt: skip
@@ -124,7 +124,7 @@ class RoomPlan(ArrayValue):
         return np.stack([ridge_a, ridge_b, far_b, far_a]), np.stack([a, b, ridge_b, ridge_a])
 
 
-def _at(xy: Float[np.ndarray, "n 2"], height_m: float | Float[np.ndarray, "n"]) -> Float[np.ndarray, "n 3"]:
+def _lift(xy: Float[np.ndarray, "n 2"], height_m: float | Float[np.ndarray, "n"]) -> Float[np.ndarray, "n 3"]:
     return np.column_stack([xy, np.broadcast_to(height_m, len(xy))])
 
 

@@ -75,7 +75,7 @@ def survey_room(name: str, scene: Scene, library: ShapeLibrary) -> RoomSurvey:
         len(scene.objects),
         max((support_depth(scene, o.id) for o in scene.objects), default=0),
         colliding_pairs(scene, library),
-        tuple(o.id for o in scene.objects if _outside(scene, library, o.id)),
+        tuple(o.id for o in scene.objects if _leaves_room(scene, library, o.id)),
     )
 
 
@@ -135,8 +135,8 @@ def _outline(scene: Scene) -> str:
     return f"{len(scene.architecture.by_role('wall'))} walls"
 
 
-def _outside(scene: Scene, library: ShapeLibrary, object_id: str) -> bool:
-    """Whether a vertex lies more than a millimetre outside floor, ceiling, or the walls of a convex room.
+def _leaves_room(scene: Scene, library: ShapeLibrary, object_id: str) -> bool:
+    """True if a vertex lies more than a millimetre outside floor, ceiling, or the walls of a convex room.
 
     A concave room's walls are checked from their own side only where the foot of the vertex is on the wall.
     """

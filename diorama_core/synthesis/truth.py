@@ -137,13 +137,13 @@ class Studio:
         camera = Camera(camera.intrinsics.scaled(*size), camera.T_world_camera)
         shot = self._shot(camera)
         room = self._room.buffers(camera)
-        scene = in_photo_world(replace(self.scene, camera=camera))
+        scene = to_photo_world(replace(self.scene, camera=camera))
         placed = scene.camera or camera
         count, instance = len(scene.objects), shot.grid.instance
         object_ids = np.where(instance < count, instance, -1).astype(np.int32)
         amodal = _amodal_boxes(scene, placed, self._library)
         visible = _visible_fractions(scene, placed, self._library, object_ids, amodal)
-        boxes = _asked(object_ids, np.where(_inside(scene, placed) >= MIN_INSIDE, visible, 0.0), size)
+        boxes = _asked(object_ids, np.where(_shares_in_picture(scene, placed) >= MIN_INSIDE, visible, 0.0), size)
         objects = tuple(
             replace(o, mask_id=k + 1 if k in boxes else None, box_px=boxes.get(k)) for k, o in enumerate(scene.objects)
         )
@@ -181,7 +181,7 @@ class Studio:
         return _developed(shoot(self._bare, nothing, PinholeView(camera), self._light, FAST))
 
 
-def in_photo_world(scene: Scene) -> Scene:
+def to_photo_world(scene: Scene) -> Scene:
     """The room and camera with the origin on the floor below the camera and +Y the axis it faces."""
     if scene.camera is None:
         raise ValueError("the scene needs a camera")
@@ -240,8 +240,8 @@ def _visible_fractions(
     return share
 
 
-def _inside(scene: Scene, camera: Camera, steps: int = 6) -> Float[np.ndarray, "n"]:
-    """For every object the share of its bounding box that lies within the picture, hidden or not."""
+def _shares_in_picture(scene: Scene, camera: Camera, steps: int = 6) -> Float[np.ndarray, "n"]:
+    """Share of every object's bounding box that lies within the picture, hidden or not."""
     along = (np.arange(steps) + 0.5) / steps - 0.5
     grid = np.stack(np.meshgrid(along, along, along), axis=-1).reshape(-1, 3)
     shares = np.zeros(len(scene.objects))

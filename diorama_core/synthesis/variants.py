@@ -97,7 +97,7 @@ class VariantMaker:
         if "light" in self.aspects:
             scene = lit_anew(rng, scene)
         for _ in range(self.settings.tries):
-            report = at_rest(scene, self.library)
+            report = stability_report(scene, self.library)
             if not report.unstable:
                 moved = max((d.moved_m for d in report.drifts), default=0.0)
                 return Variant(seed, scene, differences(self.room, scene), moved)
@@ -222,15 +222,15 @@ def lit_anew(rng: np.random.Generator, scene: Scene) -> Scene:
     return replace(scene, light_settings=replace(settings, hour=hour, north_rad=north, lamps_on=tuple(lamps)))
 
 
-def at_rest(scene: Scene, library: ShapeLibrary) -> StabilityReport:
-    """What two seconds of gravity do to a scene."""
+def stability_report(scene: Scene, library: ShapeLibrary) -> StabilityReport:
+    """Report of two seconds of gravity on a scene."""
     return stability(gather(scene, library, options=ExportOptions(joints=True, lights="none", ceiling=False)))
 
 
 def locked_where_restless(scene: Scene, library: ShapeLibrary) -> tuple[Scene, tuple[str, ...]]:
     """The scene in which what gravity moves is locked, and so welded, and the ids of that."""
     locked: tuple[str, ...] = ()
-    while fresh := [d.object_id for d in at_rest(scene, library).unstable]:
+    while fresh := [d.object_id for d in stability_report(scene, library).unstable]:
         locked = (*locked, *fresh)
         for object_id in fresh:
             scene = edits.set_locked(scene, object_id, True)

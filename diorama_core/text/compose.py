@@ -28,9 +28,9 @@ from diorama_core.text.edit_places import lifted_onto
 from diorama_core.text.placed_rows import PlacedRows, placed_rows
 from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, understood_prompt
 from diorama_core.text.requested_relations import (
-    in_row,
     is_sat_around,
     placement_order,
+    row_relations,
     seated,
     stands_between,
     targets_of,
@@ -165,7 +165,9 @@ class _Composer:
                 item = SceneObject(
                     object_id, f"{shape.category} {number}", shape.category, shape.id, shape.size_m, blank
                 )
-                wishes = in_row(seated(self.scene, [r for _, r in relations], request, copy), request, copy, shape)
+                wishes = row_relations(
+                    seated(self.scene, [r for _, r in relations], request, copy), request, copy, shape
+                )
                 spot = self.positioner.best(self.scene, item, wishes, usual=usual, others=self.relations, near=middle)
                 if spot is None:
                     continue

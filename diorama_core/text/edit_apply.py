@@ -158,14 +158,14 @@ class EditApplier:
                 raise EditRefused(f"“{place.relation}” what? Name the object")
             if set(targets) & set(moved_ids):
                 raise EditRefused(f"{scene.object(targets[0]).label} cannot be {place.relation} itself")
-            toward = _toward(scene, place.side, moved_ids)
+            toward = _side_direction(scene, place.side, moved_ids)
             if place.relation == "against wall" and place.side not in ("", "other"):
                 wall_on(scene, place.side)
             relations.append(Relation(place.relation, targets, toward=toward, side=place.side))
         return relations
 
 
-def _toward(scene: Scene, side: Side, moved_ids: Sequence[str]) -> tuple[float, float] | None:
+def _side_direction(scene: Scene, side: Side, moved_ids: Sequence[str]) -> tuple[float, float] | None:
     """The direction of a side of the room; "other" is away from where the first object is."""
     if not side or (side == "other" and not moved_ids):
         return None

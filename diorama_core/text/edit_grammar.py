@@ -20,7 +20,7 @@ from diorama_core.io.bounded import shortened
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene.types import Scene
-from diorama_core.text.edit_lengths import all_but, at_distance, counted_edits, lifted, nearer, shift_of
+from diorama_core.text.edit_lengths import all_but, counted_edits, lifted, nearer, shift_in, shift_of
 from diorama_core.text.edit_plan import (
     MAX_COPIES,
     Copy,
@@ -126,7 +126,7 @@ def _edits_of(
                 selector, "lower" if height[2] or height[1] == "lower" else "raise", rest[: height.start()], _subject
             ),
         )
-    if verb in ("put", "move") and (shift := at_distance(selector, rest, _subject, leaves=verb == "put")) is not None:
+    if verb in ("put", "move") and (shift := shift_in(selector, rest, _subject, leaves=verb == "put")) is not None:
         return (shift,)
     if verb == "move":
         return _each_alone(_move, selector, clause, rest)

@@ -62,7 +62,7 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
         kin = () if on else _standing_kin(positioner.library, phrase.category)
         choice, object_id, put = after, None, None
         for shapes in (tried[:SHAPES_TRIED], kin[:SHAPES_TRIED]):
-            if object_id is not None and not _on_floor(choice, object_id):
+            if object_id is not None and not _is_on_floor(choice, object_id):
                 break
             kind = shapes[0].category if shapes else phrase.category
             other = _with_one(positioner, after, kind, shapes, relations, targets, copy, edit.count)
@@ -75,7 +75,7 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
             done = f"; {copy} of {edit.count} would fit" if copy else ""
             raise EditRefused(f"there is no free place for {with_article(phrase.category)}{where}{done}")
         new.append(object_id)
-        if category(shape.category).mount == "surface" and not on and _on_floor(after, object_id):
+        if category(shape.category).mount == "surface" and not on and _is_on_floor(after, object_id):
             missed.append(f"{after.object(object_id).label} stands on the floor; nothing there carries it")
         missed += missed_notes(after, object_id, relations)
     assert shape is not None
@@ -90,8 +90,8 @@ def _pieces(shape: Shape) -> int:
     return NUMBERS.get(shape.caption.partition(" ")[0].lower(), 1)
 
 
-def _on_floor(scene: Scene, object_id: str) -> bool:
-    """Whether an object stands on the floor or on a rug there."""
+def _is_on_floor(scene: Scene, object_id: str) -> bool:
+    """True for an object on the floor or on a rug there."""
     edge = scene.support_of(object_id)
     return edge is None or scene.has_plane(edge.parent) or broad(scene.object(edge.parent).category) == "rug"
 

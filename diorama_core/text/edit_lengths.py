@@ -86,8 +86,8 @@ def nearer(selector: Selector, rest: str, subject: Subject) -> Shift | None:
     return Shift(objects=list(subject(selector, way[1])), toward=toward, toward_m=sign * distance)
 
 
-def at_distance(selector: Selector, rest: str, subject: Subject, *, leaves: bool) -> Shift | None:
-    """ "the table 40 cm from the sofa", "closer to the sofa, about 40 cm away": None where it says something else.
+def shift_in(selector: Selector, rest: str, subject: Subject, *, leaves: bool) -> Shift | None:
+    """Shift by "the table 40 cm from the sofa", "closer to the sofa, about 40 cm away"; None for anything else.
 
     Args:
         selector: finds the objects.

@@ -37,7 +37,7 @@ def restyled(library: ShapeLibrary, scene: Scene, ids: Sequence[str], words: str
         raise EditRefused(f"“{words}” is no colour or material known here; try light blue, sage, oak, leather")
     after, lines, notes = scene, [], []
     if look.material:
-        after, by_shape, already = _of_material(library, scene, ids, look.material)
+        after, by_shape, already = _change_material(library, scene, ids, look.material)
         lines += [f"{names_of(scene, members)}: {caption}" for caption, members in by_shape.items()]
         if already:
             notes.append(f"{names_of(scene, already)} {'is' if len(already) == 1 else 'are'} {words} already")
@@ -56,10 +56,10 @@ def restyled(library: ShapeLibrary, scene: Scene, ids: Sequence[str], words: str
     return Done(after, tuple(lines), tuple(ids), tuple(notes))
 
 
-def _of_material(
+def _change_material(
     library: ShapeLibrary, scene: Scene, ids: Sequence[str], material: str
 ) -> tuple[Scene, Mapping[str, list[str]], list[str]]:
-    """Objects as shapes of a material; which shape each became, and which were of it already."""
+    """Swap objects for shapes of a material; gives which shape each became, and which were of it already."""
     after = scene
     by_shape: dict[str, list[str]] = {}
     already: list[str] = []

@@ -76,7 +76,7 @@ def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shif
     after, notes = _as_far_as_free(positioner, scene, ids, edit, toward)
     for object_id in ids:
         after, note = freed(positioner, after, object_id)
-        if edit.up_m and not _within_heights(after, object_id):
+        if edit.up_m and not _is_within_heights(after, object_id):
             raise EditRefused(f"{scene.object(object_id).label} would leave its wall; move it by less")
         if _off_its_support(after, object_id):
             raise EditRefused(f"{after.object(object_id).label} would fall off what it stands on; move it by less")
@@ -247,8 +247,8 @@ def lifted_onto(scene: Scene, rug_id: str) -> Scene:
     return scene
 
 
-def _within_heights(scene: Scene, object_id: str) -> bool:
-    """Whether an object is between the floor and the top of the walls."""
+def _is_within_heights(scene: Scene, object_id: str) -> bool:
+    """True for an object between the floor and the top of the walls."""
     heights = scene.object(object_id).corners_world[:, 2]
     planes = [p.polygon[:, 2] for p in scene.architecture.planes if p.role in ("floor", "wall")]
     if not planes:

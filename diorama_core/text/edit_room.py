@@ -160,7 +160,7 @@ def opened_wall(library: ShapeLibrary, scene: Scene, edit: InsertOpening) -> Don
         wall = _wall_at(scene, edit.behind).id
         at = scene.object(edit.behind).pose.position[:2]
     else:
-        foot = max(feet, key=lambda f: (_toward(scene, f, edit.wall), _free_m(scene, f)))
+        foot = max(feet, key=lambda f: (_side_score(scene, f, edit.wall), _free_m(scene, f)))
         wall, at = foot.id, 0.5 * (foot.start + foot.end)
     after, new_id = with_opening(scene, library, edit.what, wall, at)
     return Done(after, (f"put {with_article(edit.what)} into a wall",), (new_id,))
@@ -222,16 +222,16 @@ def direction_of(scene: Scene, side: str) -> Float[np.ndarray, "2"]:
     return np.asarray({"right": right, "left": -right, "back": away, "front": -away}[side])
 
 
-def _toward(scene: Scene, foot: DrawnWall, side: str) -> float:
-    """How far a wall is to a side."""
+def _side_score(scene: Scene, foot: DrawnWall, side: str) -> float:
+    """Cosine between a wall's outward normal and a side's direction, rounded."""
     return round(float(foot.outward @ direction_of(scene, side)), 1) if side else 0.0
 
 
 def wall_on(scene: Scene, side: str) -> Plane:
     """The wall on a side of the room."""
     feet = wall_feet(scene)
-    foot = max(feet, key=lambda f: _toward(scene, f, side), default=None)
-    if foot is None or _toward(scene, foot, side) < ACROSS:
+    foot = max(feet, key=lambda f: _side_score(scene, f, side), default=None)
+    if foot is None or _side_score(scene, foot, side) < ACROSS:
         raise EditRefused(
             f"this room has no {side} wall; the photo shows {len(feet) or 'no'} wall{'s' * (len(feet) != 1)}"
         )

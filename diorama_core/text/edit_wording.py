@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from diorama_core.errors import EditRefused
-from diorama_core.text.foreign_words import in_english
+from diorama_core.text.foreign_words import to_english
 from diorama_core.text.looks import look_of
 from diorama_core.text.phrases import noun_phrase, split_places
 
@@ -108,7 +108,7 @@ def clauses_of(command: str) -> tuple[str, ...]:
     Raises:
         EditRefused: there are no words, or too many.
     """
-    text = " ".join(in_english(command).lower().replace("’", "'").split()).strip(" .!")
+    text = " ".join(to_english(command).lower().replace("’", "'").split()).strip(" .!")
     if not text:
         raise EditRefused(f"there is no command; for example: {EXAMPLES}")
     if len(text) > MAX_COMMAND_CHARS:
@@ -131,7 +131,7 @@ def plain(clause: str) -> str:
         verb = "put" if wanted[2] is None and split_places(wanted[1])[1] else "make"
         clause = " ".join(w for w in (verb, wanted[1], wanted[2]) if w)
     if (taken := _TAKEN.match(clause)) is not None:
-        return f"remove {_on(taken)}"
+        return f"remove {_taken_phrase(taken)}"
     return _ORIGIN.sub(" on ", _GONE.sub(r"remove \1", clause))
 
 
@@ -150,7 +150,7 @@ def _without_remarks(clauses: list[str]) -> tuple[str, ...]:
             clause, about = _PRONOUN.sub(about, clause, count=1), ""
         taken = _PICKED_UP.match(_POLITE.sub("", clause))
         if taken is not None and not last and _SET_DOWN.match(clauses[index + 1]):
-            about = _on(taken)
+            about = _taken_phrase(taken)
             continue
         if re.match(rf"^{_BEGINS}", clause) is None:
             remark = _REMARK.match(clause) or _LIKED.match(clause)
@@ -163,8 +163,8 @@ def _without_remarks(clauses: list[str]) -> tuple[str, ...]:
     return tuple(remarks)
 
 
-def _on(taken: re.Match[str]) -> str:
-    """What is taken, with what it is on."""
+def _taken_phrase(taken: re.Match[str]) -> str:
+    """Phrase for what is taken, with what it is on."""
     return taken[1] if taken[2] is None else f"{taken[1]} on {taken[2]}"
 
 

@@ -69,12 +69,12 @@ def propose_edits(
     """
     clauses_of(command)  # an empty or endless command is nothing to ask about
     if language_model is None:
-        return _by_grammar(command, scene, library, selected)
+        return _propose_by_grammar(command, scene, library, selected)
     try:
-        return _by_model(command, scene, library, language_model, selected, progress)
+        return _propose_by_model(command, scene, library, language_model, selected, progress)
     except (UnavailableError, EditRefused) as trouble:
         try:
-            plain = _by_grammar(command, scene, library, selected)
+            plain = _propose_by_grammar(command, scene, library, selected)
         except EditRefused as refused:
             raise trouble if isinstance(trouble, EditRefused) else refused from trouble
         note = f"understood without the language model ({trouble})"
@@ -119,7 +119,7 @@ def apply_edits(
     return _proposed(command, scene, after, edits, lines, notes, translator)
 
 
-def _by_grammar(command: str, scene: Scene, library: ShapeLibrary, selected: Sequence[str]) -> ProposedEdits:
+def _propose_by_grammar(command: str, scene: Scene, library: ShapeLibrary, selected: Sequence[str]) -> ProposedEdits:
     applier = EditApplier(Positioner(library))
     after, last = scene, tuple(selected)
     edits: list[Edit] = []
@@ -127,7 +127,7 @@ def _by_grammar(command: str, scene: Scene, library: ShapeLibrary, selected: Seq
     notes: list[str] = []
     for clause in clauses_of(command):
         for proposal in edits_of(clause, after, library, last, selected):
-            edit = _in_case(proposal, command)
+            edit = _restore_case(proposal, command)
             done = applier.apply(after, edit)
             after, last = done.scene, done.touched or last
             edits.append(edit)
@@ -136,7 +136,7 @@ def _by_grammar(command: str, scene: Scene, library: ShapeLibrary, selected: Seq
     return _proposed(command, scene, after, edits, lines, notes, "grammar")
 
 
-def _in_case(edit: Edit, command: str) -> Edit:
+def _restore_case(edit: Edit, command: str) -> Edit:
     """An edit whose name is spelt as the command spells it; clauses are lower case."""
     if not isinstance(edit, Rename):
         return edit
@@ -144,7 +144,7 @@ def _in_case(edit: Edit, command: str) -> Edit:
     return edit if at < 0 else edit.model_copy(update={"to": command[at : at + len(edit.to)]})
 
 
-def _by_model(
+def _propose_by_model(
     command: str,
     scene: Scene,
     library: ShapeLibrary,

@@ -32,7 +32,7 @@ _ENGLISH = frozenset(
 Phrase = tuple[str, ...]
 
 
-def in_english(text: str) -> str:
+def to_english(text: str) -> str:
     """A text in English where it is German, French or Spanish; any other as it is."""
     tokens = _TOKEN.findall(_plain(text))
     scores = {name: _own_words(tokens, name) for name in LANGUAGES}

@@ -126,13 +126,13 @@ def _places(
             low_x, low_y, high_x, high_y = shapely.union_all(floors).bounds
             between = made.object(door)
             made, half = _opened(made, door) if is_open else (made, float(between.size_m[1]) / 2)
-            gone = _in_the_way(made, between, half)
+            gone = _ids_in_way(made, between, half)
             lost_m2 = sum(float(np.prod(made.object(i).size_m[:2])) for i in gone)
             yield (round(lost_m2, 1), (high_x - low_x) * (high_y - low_y)), edits.remove(made, gone)
 
 
-def _in_the_way(home: Scene, door: SceneObject, half_m: float) -> set[str]:
-    """What hangs or stands in a new way between two rooms, with what stands on it.
+def _ids_in_way(home: Scene, door: SceneObject, half_m: float) -> set[str]:
+    """Ids of what hangs or stands in a new way between two rooms, with what stands on it.
 
     Args:
         home: the rooms joined.

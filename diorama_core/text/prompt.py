@@ -10,7 +10,7 @@ from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.taxonomy import broad, category, having, is_furniture, resolve
 from diorama_core.synthesis import RoomKind
 from diorama_core.text.customs import usual_relations_of
-from diorama_core.text.foreign_words import in_english
+from diorama_core.text.foreign_words import to_english
 from diorama_core.text.phrases import MAX_OF_A_KIND, NUMBERS, NounPhrase, PlacePhrase, noun_phrase, split_places
 from diorama_core.text.rows import with_marks
 
@@ -141,7 +141,7 @@ class _Reading:
 
 def understood_prompt(prompt: str) -> RoomRequest:
     """Read a prompt in plain English, German, French or Spanish; what is not understood is listed, never fatal."""
-    text = " ".join(re.sub(r"[^a-z0-9' ,;.-]+", " ", in_english(prompt).lower()).split())
+    text = " ".join(re.sub(r"[^a-z0-9' ,;.-]+", " ", to_english(prompt).lower()).split())
     room, rest = _room(text)
     named = rest != text
     rest, excluded = _without_unwished(rest)

@@ -27,7 +27,7 @@ _APART = frozenset({"opposite", "facing", "in corner"})
 """Wishes that take the second of two beds to another wall than the first."""
 
 
-def in_row(relations: Sequence[Relation], request: RequestedObject, copy: int, shape: Shape) -> list[Relation]:
+def row_relations(relations: Sequence[Relation], request: RequestedObject, copy: int, shape: Shape) -> list[Relation]:
     """The relations of one of several seats that are wished before or opposite something: each has its place.
 
     Args:
@@ -150,7 +150,7 @@ def targets_of(scene: Scene, wish: Wish, copy: int) -> tuple[str, ...]:
     return tuple(g[copy % len(g)] for g in present if g)[:1]
 
 
-def _of_kind(scene: Scene, name: str) -> list[str]:
+def _ids_of_kind(scene: Scene, name: str) -> list[str]:
     """Ids of the objects of a category, or of special kinds of it: a sectional sofa is a sofa."""
     return [o.id for o in scene.objects if name in (o.category, broad(o.category))]
 
@@ -163,7 +163,9 @@ def usual_relations(scene: Scene, request: RequestedObject, copy: int) -> list[R
         if wish.kind == "in front of" and request.category in SEATS and "bed" not in wish.targets:
             relations += [Relation("facing", targets)] if (targets := targets_of(scene, wish, copy)) else []
     if copy and broad(request.category) == "bed" and not requested & _APART:
-        relations += [Relation("beside", (present[0],)) for present in (_of_kind(scene, request.category),) if present]
+        relations += [
+            Relation("beside", (present[0],)) for present in (_ids_of_kind(scene, request.category),) if present
+        ]
     for kind, names in usual_relations_of(request.category):
         if kind in requested or (
             requested and kind in ("in corner", "above", "on") and request.category != "television"
@@ -174,7 +176,7 @@ def usual_relations(scene: Scene, request: RequestedObject, copy: int) -> list[R
         if not names:
             relations.append(Relation(kind))
             continue
-        present = next((ids for n in names if (ids := _of_kind(scene, n))), None)
+        present = next((ids for n in names if (ids := _ids_of_kind(scene, n))), None)
         if present:
             relations.append(Relation(kind, (present[copy % len(present)],)))
     return relations

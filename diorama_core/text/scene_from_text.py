@@ -20,7 +20,7 @@ from diorama_core.progress import SILENT, Progress
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.render.slabs import plane_surfaces
 from diorama_core.scene.types import Camera, Intrinsics, Scene
-from diorama_core.synthesis import in_photo_world
+from diorama_core.synthesis import to_photo_world
 from diorama_core.synthesis.cameras import level_pose
 from diorama_core.synthesis.finishes import finish_textures
 from diorama_core.text.compose import composed_room
@@ -50,7 +50,7 @@ def finished(scene: Scene, library: ShapeLibrary) -> tuple[Scene, Mapping[str, U
     # Every room has doors and windows; a picture may do without.
     worth = {o.id: 0.2 if o.category in OPENING_CATEGORIES else 1.0 for o in scene.objects}
     seen = part_of_home(scene, [scene.rooms[0].id]) if scene.rooms else scene
-    scene = in_photo_world(replace(scene, camera=best_viewpoint(seen, library, SIZE, worth)))
+    scene = to_photo_world(replace(scene, camera=best_viewpoint(seen, library, SIZE, worth)))
     textures = finish_textures(scene.architecture)
     planes = tuple(replace(p, texture=p.id if p.id in textures else None) for p in scene.architecture.planes)
     return replace(scene, architecture=replace(scene.architecture, planes=planes)), textures

@@ -52,13 +52,13 @@ def _place(f: Furnisher, item: Item, rng: np.random.Generator) -> str | None:
         wall = f.plan.walls[int(rng.integers(len(f.plan.walls)))]
         return f.hang(item, wall, float(rng.uniform(0.0, wall.length_m)), float(rng.uniform(0.8, 2.0)))
     if mount == "surface":
-        return _on_something(f, item, rng)
+        return _place_on_something(f, item, rng)
     if f.chance(0.5):
         return f.against_wall(item, free_front_m=0.0)
     return f.anywhere(item)
 
 
-def _on_something(f: Furnisher, item: Item, rng: np.random.Generator) -> str | None:
+def _place_on_something(f: Furnisher, item: Item, rng: np.random.Generator) -> str | None:
     carriers = [o for o in f.objects if f.surfaces(o.id) and o.category not in ("rug", item.category)]
     for k in rng.permutation(len(carriers))[:8]:
         parent = carriers[int(k)]

@@ -58,7 +58,7 @@ def make_windows(folder: Path, library: ShapeLibrary, seeds: range, progress: Pr
         The number of rooms rendered now.
     """
     return make_files(
-        folder, seeds, "windows_{:06d}.npz".format, lambda seed: _packed(_of_room(seed, library)), progress
+        folder, seeds, "windows_{:06d}.npz".format, lambda seed: _packed(_room_windows(seed, library)), progress
     )
 
 
@@ -106,8 +106,8 @@ def read_windows(path: Path) -> Windows:
         return Windows(saved["rgb"], saved["share"], inside)
 
 
-def _of_room(seed: int, library: ShapeLibrary) -> Windows:
-    """No windows where the room cannot be furnished or photographed; it is not tried again."""
+def _room_windows(seed: int, library: ShapeLibrary) -> Windows:
+    """Windows of a room; none where it cannot be furnished or photographed; it is not tried again."""
     rng = np.random.default_rng(seed)
     rgb, share, inside = [], [], []
     try:

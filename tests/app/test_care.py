@@ -36,9 +36,9 @@ def test_projects_are_renamed_copied_binned_and_brought_back(tmp_path: Path) -> 
     assert set(project_care.recent_projects(tmp_path)) == {project.folder, copy.folder}
     place = project_care.to_bin(copy.folder, tmp_path)
     assert copy.folder not in project_care.recent_projects(tmp_path)
-    assert project_care.in_bin(tmp_path) == (place,)
+    assert project_care.binned_projects(tmp_path) == (place,)
     assert project_care.out_of_bin(place, tmp_path) == copy.folder
-    assert project_care.in_bin(tmp_path) == ()
+    assert project_care.binned_projects(tmp_path) == ()
     place = project_care.to_bin(copy.folder, tmp_path)
     make_project(copy.folder)
     with pytest.raises(ProjectError, match="exists again"):

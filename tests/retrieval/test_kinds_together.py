@@ -75,6 +75,6 @@ def test_sums_over_the_forest_are_those_over_all_combinations() -> None:
         total += weight
         for i, k in enumerate(combination):
             expected[i, k] += weight
-    beliefs, log = module._in_room(own, carrier_of, edges)
+    beliefs, log = module._room_marginals(own, carrier_of, edges)
     np.testing.assert_allclose(beliefs, expected / total, atol=1e-12)
     assert log == pytest.approx(np.log(total))

@@ -9,7 +9,13 @@ import pytest
 
 from diorama_core.scene import edits
 from diorama_core.scene.schema import scene_to_json
-from diorama_core.synthesis.variants import VariantMaker, VariantSettings, at_rest, differences, locked_where_restless
+from diorama_core.synthesis.variants import (
+    VariantMaker,
+    VariantSettings,
+    differences,
+    locked_where_restless,
+    stability_report,
+)
 from tests.export.scenes import scene_of
 
 pytest.importorskip("mujoco", reason="MuJoCo is not installed (optional extra 'sim')")
@@ -23,7 +29,7 @@ def test_a_seed_gives_one_room_at_rest_and_another_seed_another() -> None:
     assert other is not None
     assert scene_to_json(first.scene) == scene_to_json(again.scene)
     assert scene_to_json(first.scene) != scene_to_json(other.scene)
-    assert not at_rest(other.scene, library).unstable
+    assert not stability_report(other.scene, library).unstable
     assert first.max_moved_m < 0.01
     assert dict(first.changes) == differences(scene, first.scene)
     assert {"floor", "light"} <= set(first.changes)
@@ -58,4 +64,4 @@ def test_what_does_not_rest_in_the_room_is_locked() -> None:
     lifted = edits.move(scene, "lamp_1", scene.object("lamp_1").pose.moved(np.array([0.0, 0.0, 0.1])))
     calm, locked = locked_where_restless(lifted, library)
     assert locked == ("lamp_1",)
-    assert not at_rest(calm, library).unstable
+    assert not stability_report(calm, library).unstable

@@ -8,7 +8,7 @@ from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.text.editing_by_words import propose_edits
-from diorama_core.text.foreign_words import LANGUAGES, _phrases, _words, in_english
+from diorama_core.text.foreign_words import LANGUAGES, _phrases, _words, to_english
 from diorama_core.text.prompt import understood_prompt
 from tests.text.edited import living_room
 
@@ -68,7 +68,7 @@ def test_a_word_that_is_not_known_is_named_in_the_refusal() -> None:
     ["make the sofa red and put a rug under it", "a sofa, a rug, a lamp", "Remove it!", "", "paint the walls rose"],
 )
 def test_english_stays_as_it_is(text: str) -> None:
-    assert in_english(text) == text
+    assert to_english(text) == text
 
 
 def test_plurals_and_cases_are_known() -> None:

@@ -9,9 +9,9 @@ from diorama_core.editing.relations import Relation
 from diorama_core.scene.types import Scene
 from diorama_core.text.prompt import RequestedObject, Wish
 from diorama_core.text.requested_relations import (
-    in_row,
     is_sat_around,
     placement_order,
+    row_relations,
     seated,
     seats_at,
     stands_between,
@@ -81,12 +81,14 @@ def test_seats_in_a_row_have_a_place_each() -> None:
     chair = BlockLibrary().in_category("chair")[0]
     width = float(chair.size_m[1])
     seats = RequestedObject("armchair", "armchair", 2, wishes=(Wish("opposite", ("sofa",)),))
-    rows = [in_row([Relation("opposite", ("sofa",)), Relation("near", ("sofa",))], seats, k, chair) for k in (0, 1)]
+    rows = [
+        row_relations([Relation("opposite", ("sofa",)), Relation("near", ("sofa",))], seats, k, chair) for k in (0, 1)
+    ]
     assert rows[0][0].aside_m == pytest.approx(-rows[1][0].aside_m)
     assert rows[1][0].aside_m - rows[0][0].aside_m > width
     assert rows[0][1].aside_m == 0.0
     alone = RequestedObject("armchair", "armchair")
-    assert in_row([Relation("opposite", ("sofa",))], alone, 0, chair) == [Relation("opposite", ("sofa",))]
+    assert row_relations([Relation("opposite", ("sofa",))], alone, 0, chair) == [Relation("opposite", ("sofa",))]
 
 
 @pytest.mark.parametrize(("count", "on_sides"), [(2, 2), (4, 4), (6, 4), (8, 6)])

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_app.session.units import UNITS, format_length, in_unit, parse_length
+from diorama_app.session.units import UNITS, format_length, parse_length, to_unit
 from diorama_core.errors import InputError
 
 
@@ -46,5 +46,5 @@ def test_what_is_no_length_is_said_so(words: str) -> None:
 
 
 def test_fields_show_a_tenth_of_a_centimetre() -> None:
-    assert in_unit(1.2346, "cm") == 123.5
-    assert in_unit(1.2346, "m") == 1.235
+    assert to_unit(1.2346, "cm") == 123.5
+    assert to_unit(1.2346, "m") == 1.235
