@@ -24,6 +24,7 @@ from diorama_core.scene.types import Camera, Scene
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.splits import split_library
 from tests.few_shapes import few_shapes
+from tests.made_once import made_once
 from tests.multiview.two_photos import SMALL, AsItIs, two_photos, with_camera
 
 
@@ -96,7 +97,8 @@ def marked(view: RoomView, name: str, camera: Camera) -> FurtherPhoto:
 @cache
 def made_views() -> tuple[RoomView, ...]:
     """A room photographed from four places."""
-    return tuple(photographed(recipe_of_rooms(3, 1, 101)[0], split_library(built_in_library(), "test"), 4, SMALL))
+    tested = split_library(built_in_library(), "test")
+    return made_once("four views", lambda: tuple(photographed(recipe_of_rooms(3, 1, 101)[0], tested, 4, SMALL)))
 
 
 def marked_photos() -> list[FurtherPhoto]:

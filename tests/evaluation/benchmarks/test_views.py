@@ -23,6 +23,7 @@ from diorama_core.synthesis.splits import split_library
 from diorama_core.synthesis.truth import Studio
 from tests.few_marked import few_marked
 from tests.few_shapes import few_shapes
+from tests.made_once import made_once
 from tests.multiview.two_photos import SMALL, AsItIs
 
 
@@ -47,7 +48,8 @@ SEED = 38
 @cache
 def pictures() -> tuple[RoomView, ...]:
     """Pictures of the first room of a series, from two places."""
-    return photographed(recipe(1, 1, SEED)[0], split_library(built_in_library(), "test"), 2, SMALL)
+    tested = split_library(built_in_library(), "test")
+    return made_once("two views", lambda: photographed(recipe(1, 1, SEED)[0], tested, 2, SMALL))
 
 
 def test_pictures_show_one_room_from_different_places() -> None:

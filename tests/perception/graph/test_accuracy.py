@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import pytest
@@ -13,6 +14,7 @@ from diorama_core.evaluation.benchmarks.relations import RelationCount, relation
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.synthesis import ROOM_KINDS, TruthView, furnished_room, render_truth, sample_cameras
+from tests.made_once import made_once
 from tests.perception.language.stub_lmm import StubLmm, answering
 
 SIZE = (320, 240)
@@ -30,7 +32,7 @@ def _view(seed: int) -> TruthView:
 
 @pytest.fixture(scope="module")
 def views() -> list[TruthView]:
-    return [_view(seed) for seed in SEEDS]
+    return [made_once(f"supports {seed}", partial(_view, seed)) for seed in SEEDS]
 
 
 def test_supporters_are_right_with_depth(views: list[TruthView]) -> None:
