@@ -99,7 +99,7 @@ class Workspace:
                     self._asked_for[editor] = time.monotonic()
                     return editor
             folder = find_project(self._projects_dir, name)
-            return None if folder is None else self._of(Project.open(folder))
+            return None if folder is None else self._editor_of(Project.open(folder))
 
     def visit(self, client: ConnectedClient, project: Project, message: str = "") -> None:
         """Take one browser to a project, opened if necessary.
@@ -113,7 +113,7 @@ class Workspace:
             ProjectError, SceneError: it cannot be opened; the browser stays where it is.
         """
         with self._lock:
-            editor = self._of(project)
+            editor = self._editor_of(project)
         if message:
             editor.session.greeting = (message, "good")
         client.go_to(address_of(project.folder))
@@ -149,7 +149,7 @@ class Workspace:
                     editor.close()
                     stop_server(editor.server)
 
-    def _of(self, project: Project) -> Editor:
+    def _editor_of(self, project: Project) -> Editor:
         for editor in self._editors:
             shown = editor.session.project
             if shown is not None and shown.folder.resolve() == project.folder.resolve():

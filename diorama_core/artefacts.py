@@ -93,7 +93,7 @@ class Inputs(ArrayValue):
     """Given camera height above the floor, also from a known length; None where it is estimated."""
 
     @property
-    def of_any_camera(self) -> Inputs:
+    def without_camera(self) -> Inputs:
         """The inputs without what is known of the camera, on which outlines do not depend."""
         return replace(self, intrinsics=None, camera_attitude=None, camera_height_m=None)
 

@@ -63,7 +63,7 @@ class Progress:
     def report(self, fraction: float, message: str) -> None:
         """Report that `fraction` (0 to 1) of this part is done; raises `Cancelled` when asked to stop."""
         self.check()
-        self.on_event(ProgressEvent(fraction=self._at(min(max(fraction, 0.0), 1.0)), message=message))
+        self.on_event(ProgressEvent(fraction=self._overall_fraction(min(max(fraction, 0.0), 1.0)), message=message))
 
     def found(self, words: str, drawn: Segments = ()) -> None:
         """Report what this part of the job, which is done, found: words and lines; nothing without words."""
@@ -80,12 +80,12 @@ class Progress:
         return Progress(
             on_event=self.on_event,
             token=self.token,
-            start=self._at(start),
-            end=self._at(end),
+            start=self._overall_fraction(start),
+            end=self._overall_fraction(end),
         )
 
-    def _at(self, fraction: float) -> float:
-        """On the whole job's scale; a part ends exactly where the next one begins."""
+    def _overall_fraction(self, fraction: float) -> float:
+        """Fraction of the whole job; a part ends exactly where the next one begins."""
         return self.start * (1.0 - fraction) + self.end * fraction
 
 

@@ -174,7 +174,7 @@ def jobs(going: Going, chance: np.random.Generator) -> Figures:
                 say(f"{job.id} waits")
                 if number % 2 == 1:
                     queue.cancel(job.id)
-                for waiting in [j for j in queue.jobs() if not j.over]:
+                for waiting in [j for j in queue.jobs() if not j.is_over]:
                     say(f"{waiting.id} {asyncio.run(queue.wait(waiting.id, JOB_S)).state}")
                 for old in queue.jobs()[KEPT:]:
                     say(f"{old.id} leaves")

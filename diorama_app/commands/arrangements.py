@@ -34,16 +34,16 @@ class Arrangements:
         An object with fewer shapes takes its last.
         """
         scene = self.scene
-        for object_id, candidate in self._at(rank, only).items():
+        for object_id, candidate in self._candidates_at(rank, only).items():
             if candidate.shape_id != scene.object(object_id).shape_id:
                 scene = edits.swap(scene, object_id, candidate, keep_pose=True)
         return scene
 
     def is_taken(self, rank: int, only: Collection[str] | None = None) -> bool:
         """Whether everything that `taken` would change is so already."""
-        return all(c.shape_id == self.scene.object(i).shape_id for i, c in self._at(rank, only).items())
+        return all(c.shape_id == self.scene.object(i).shape_id for i, c in self._candidates_at(rank, only).items())
 
-    def _at(self, rank: int, only: Collection[str] | None) -> dict[str, Candidate]:
+    def _candidates_at(self, rank: int, only: Collection[str] | None) -> dict[str, Candidate]:
         chosen = self._offers if only is None else {i: self._offers[i] for i in only if i in self._offers}
         return {object_id: of[min(rank, len(of) - 1)] for object_id, of in chosen.items()}
 

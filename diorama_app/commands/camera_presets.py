@@ -28,7 +28,7 @@ class Views:
         self._plain(client)
         client.view.camera.frame(partial(room_view, self._session.scene))
 
-    def along(self, client: Client, back: tuple[float, float, float]) -> None:
+    def look(self, client: Client, back: tuple[float, float, float]) -> None:
         """Show the room along an axis from far away, with hardly any perspective."""
         self._plain(client)
         client.view.camera.frame(partial(side_view, self._session.scene, np.array(back)), float(NARROW_FOV_RAD))

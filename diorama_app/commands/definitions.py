@@ -252,11 +252,11 @@ def _views(views: Views) -> tuple[Command, ...]:
     return (
         Command("view_room", "Room view", views.room_view, "R", None, "Show the whole room"),
         Command("view_photo", "Photo view", views.photo, "P", None, "View from the photo's camera"),
-        Command("view_top", "Top view", lambda g: views.along(g, (0.0, -1e-3, 1.0)), "T", None, "From above"),
+        Command("view_top", "Top view", lambda g: views.look(g, (0.0, -1e-3, 1.0)), "T", None, "From above"),
         Command("view_plan", "Plan", views.plan, "7", None, "The plan: drag walls and corners, type lengths"),
-        Command("view_front", "Front view", lambda g: views.along(g, (0.0, -1.0, 0.0)), "4", None, "From the front"),
-        Command("view_left", "Left view", lambda g: views.along(g, (-1.0, 0.0, 0.0)), "5", None, "From the left"),
-        Command("view_right", "Right view", lambda g: views.along(g, (1.0, 0.0, 0.0)), "6", None, "From the right"),
+        Command("view_front", "Front view", lambda g: views.look(g, (0.0, -1.0, 0.0)), "4", None, "From the front"),
+        Command("view_left", "Left view", lambda g: views.look(g, (-1.0, 0.0, 0.0)), "5", None, "From the left"),
+        Command("view_right", "Right view", lambda g: views.look(g, (1.0, 0.0, 0.0)), "6", None, "From the right"),
         Command("walk", "Walk", views.walk, "W", None, "Walk through the room: W A S D, drag to look around"),
         Command(
             "play",

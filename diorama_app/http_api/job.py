@@ -49,8 +49,8 @@ class Job:
     """Why it failed, in one line."""
 
     @property
-    def over(self) -> bool:
-        """Whether nothing more happens."""
+    def is_over(self) -> bool:
+        """True if nothing more happens."""
         return self.state in ("done", "failed", "cancelled")
 
 

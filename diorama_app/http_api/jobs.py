@@ -69,7 +69,7 @@ class JobQueue:
         noted = noted_jobs(projects_dir)
         self._jobs: dict[str, Job] = {job.id: job for job in noted.values()}
         self._folders = {job.id: folder for folder, job in noted.items()}
-        self._waiting = deque(j.id for j in sorted(self._jobs.values(), key=lambda j: j.created) if not j.over)
+        self._waiting = deque(j.id for j in sorted(self._jobs.values(), key=lambda j: j.created) if not j.is_over)
         self._adding = 0
         """Jobs whose projects are being written."""
         self._progress = dict[str, ProgressEvent]()
@@ -189,7 +189,7 @@ class JobQueue:
         with self._changed:
             self._listeners.add(told)
         try:
-            while not (job := self.job(job_id)).over and not self._closed and (left := until - loop.time()) > 0:
+            while not (job := self.job(job_id)).is_over and not self._closed and (left := until - loop.time()) > 0:
                 changed.clear()
                 with contextlib.suppress(asyncio.TimeoutError):
                     await asyncio.wait_for(changed.wait(), left)
@@ -208,7 +208,7 @@ class JobQueue:
         """
         with self._changed:
             job = self.job(job_id)
-            if job.over:
+            if job.is_over:
                 raise JobStateError(f"{job_id} is over already ({job.state})")
             if job.state == "running":
                 self._tokens[job_id].cancel()
@@ -228,7 +228,7 @@ class JobQueue:
         """
         with self._changed:
             job = self.job(job_id)
-            if not job.over:
+            if not job.is_over:
                 raise JobStateError(f"{job_id} is {job.state}; cancel it first")
             del self._jobs[job_id]
         try:
@@ -262,7 +262,7 @@ class JobQueue:
                 token = self._tokens[job.id] = CancelToken()
                 running = self._keep(replace(job, state="running", tries=job.tries + 1))
             try:
-                over = self._over(job, running, token)
+                over = self._finish(job, running, token)
             except Exception as problem:  # one room's defect must not end the builds of all
                 over = replace(running, state="failed", error=line_of(problem, job.id))
             give_back_memory()
@@ -271,7 +271,7 @@ class JobQueue:
                 self._progress.pop(job.id, None)
                 self._keep(over)
 
-    def _over(self, job: Job, running: Job, token: CancelToken) -> Job:
+    def _finish(self, job: Job, running: Job, token: CancelToken) -> Job:
         """Build a job; gives what became of it, which its project notes."""
         folder = self._folders[job.id]
         if job.tries >= MAX_TRIES:

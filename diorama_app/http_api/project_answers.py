@@ -276,7 +276,7 @@ def check_answer(scene: Scene, library: ShapeLibrary) -> CheckAnswer:
     """Collisions, what floats or is outside, walkways, and what people hardly get at."""
     collisions = Collisions(library)
     bad = problems(scene, library, collisions)
-    pairs = sorted(tuple(sorted(pair)) for pair in collisions.of(scene, [o.id for o in scene.objects]))
+    pairs = sorted(tuple(sorted(pair)) for pair in collisions.pairs(scene, [o.id for o in scene.objects]))
     walkways = 1.0 if scene.architecture.floor is None else measure(Asked("", {}, {}, ()), scene, library).navigable
     shares = access_shares(scene, RoomFrame.of(scene)) if scene.architecture.floor is not None else {}
     reach = {i: round(share, 2) for i, share in sorted(shares.items(), key=lambda p: p[1]) if share < HARD_TO_REACH}

@@ -180,7 +180,7 @@ class Gestures:
         self._session.viewport.preview(poses)
         moving = [i for i in poses if i in {*self._moving()}] or list(poses)
         self._show_distances(scene)
-        pairs = self._collisions.of(scene, moving)
+        pairs = self._collisions.pairs(scene, moving)
         if self._client.marks.collide({i for pair in pairs for i in pair}):
             self._client.show_marks()
 
@@ -202,7 +202,7 @@ class Gestures:
     def _resizing(self, start: Scene, now: Scene) -> None:
         poses = changed_poses(start, now)
         self._session.viewport.preview(poses)
-        self._client.marks.collide({i for pair in self._collisions.of(now, list(poses)) for i in pair})
+        self._client.marks.collide({i for pair in self._collisions.pairs(now, list(poses)) for i in pair})
         self._client.show_marks(now)
 
     def _moving(self) -> Iterable[str]:

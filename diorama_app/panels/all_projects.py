@@ -36,7 +36,7 @@ class AllProjects:
 
     def refresh(self) -> None:
         """Draw it while it is open."""
-        self._html.show(self._client.session.glances.of(self._key(), self._drawn) if self._open else "")
+        self._html.show(self._client.session.glances.get(self._key(), self._drawn) if self._open else "")
 
     def open(self) -> None:
         """Show it over the page; Esc closes it."""
@@ -80,7 +80,7 @@ class AllProjects:
     def _tile(self, folder: Path, name: str) -> str:
         address, session = manage.address_of(folder), self._client.session
         current, written = _is_open(session.project, folder), manage.touched(folder)
-        picture = session.thumbnails.of(f"{folder} {written}", lambda: project_picture(folder))
+        picture = session.thumbnails.picture_html(f"{folder} {written}", lambda: project_picture(folder))
         when = time.strftime("%Y-%m-%d, %H:%M", time.localtime(written))
         hidden = "" if self._words.casefold() in name.casefold() else "hidden"
         label, named = text(_("Open {name}").format(name=name)), text(_("Name of {name}").format(name=name))

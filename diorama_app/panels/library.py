@@ -100,7 +100,7 @@ class LibraryPanel:
             return self._tile(shape, told=scene is not None, own=on_own_shelf)
 
         shown = matches[: self._most]
-        tiles = self._mine.in_folders(shown, tile) if on_own_shelf else "".join(map(tile, shown))
+        tiles = self._mine.folder_tiles(shown, tile) if on_own_shelf else "".join(map(tile, shown))
         tiles = tiles if on_own_shelf or not tiles else f'<div class="grid two">{tiles}</div>'
         more = (
             button(_("{count} more").format(count=len(matches) - self._most), "more")

@@ -28,7 +28,7 @@ class OwnShelf:
         library = self._client.session.library
         return library.own_models if isinstance(library, UserLibrary) else OwnModels()
 
-    def in_folders(self, shapes: Iterable[Shape], tile: Callable[[Shape], str]) -> str:
+    def folder_tiles(self, shapes: Iterable[Shape], tile: Callable[[Shape], str]) -> str:
         """Tiles under the names of their folders; those in no folder come first.
 
         Args:

@@ -155,7 +155,7 @@ class PhotoPanel:
         show_if(further is None, self._words, self._describe)
         self._drawn_by.show(f'<p class="dim">{text(_(how_pictures_come()))}</p>' if self._words.value.strip() else "")
         enable(self._describe, idle and bool(self._words.value.strip()))
-        finds, about = self._session.glances.of("detection", _detection)
+        finds, about = self._session.glances.get("detection", _detection)
         enable(self._find, idle and finds)
         show_value(self._at_once, client.preferences.build_at_once)
         self._no_detector.show(about if inputs is not None else "")

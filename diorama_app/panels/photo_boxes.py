@@ -161,7 +161,7 @@ class PhotoBoxes:
                 client.refresh()
                 photo = inputs.photo
                 marked = [b.box for b in inputs.boxes]
-                self._suggested(inputs).at(x, y, marked, lambda box: client.post(lambda: self._meant(photo, box)))
+                self._suggested(inputs).suggest(x, y, marked, lambda box: client.post(lambda: self._meant(photo, box)))
             case Accepted(i, label):
                 self._mark(inputs, labelled_box(rows[i].box, label or rows[i].label))
             case Dismissed(i):

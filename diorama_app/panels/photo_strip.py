@@ -47,7 +47,7 @@ class PhotoStrip:
         session, client = self._client.session, self._client
         inputs, camera = session.inputs, session.scene.camera
         shown = (inputs is not None and camera is not None) or awaits_photo(session.scene)
-        missing = session.glances.of("joining", lambda: missing_for_joining(session.scene)) if shown else ""
+        missing = session.glances.get("joining", lambda: missing_for_joining(session.scene)) if shown else ""
         self._upload.show_if(shown and not missing)
         if inputs is None or camera is None or not session.further_photos:
             self._html.show(f'<p class="dim">{text(_(missing or ADVICE))}</p>' if shown else "")

@@ -54,13 +54,13 @@ class _Choices:
         self._html.show(
             f'<h4>{text(_("View"))}</h4><div class="bar">{views}</div>'
             f'<h4>{text(_("Width in pixels"))}</h4><div class="bar">{widths}</div>'
-            f'<p class="dim">{text(self._in_words())}</p><div class="bar" style="margin:10px 0 0">{buttons}</div>'
+            f'<p class="dim">{text(self._description())}</p><div class="bar" style="margin:10px 0 0">{buttons}</div>'
         )
 
     def _widths(self) -> tuple[int, ...]:
         return FILM_WIDTHS if self._view == "turntable" else WIDTHS
 
-    def _in_words(self) -> str:
+    def _description(self) -> str:
         across, down = picture_size(self._client, self._view, self._width)
         if self._view == "turntable":
             return _("Four seconds of {across} × {down} pixels, as {format}; takes some minutes.").format(

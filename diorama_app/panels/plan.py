@@ -47,7 +47,7 @@ class ShapeOutlines:
         self._lost: set[str] = set()
         self._looking = False
 
-    def of(self, item: SceneObject) -> tuple[Outline, ...]:
+    def object_outlines(self, item: SceneObject) -> tuple[Outline, ...]:
         """Outlines of an object in the world's x and y; the rectangle of its box while its shape's is unknown."""
         R, scale = item.pose.R_world_object[:2, :2], np.asarray(item.pose.scale)[:2]
         known = self._found.get(item.shape_id)
@@ -104,7 +104,7 @@ class Plan:
         scene = self._seen()
         self._outlines.look_for(scene, lambda: client.post(self.refresh, key="plan"))
         self._picture.refresh()
-        self._tell(json.dumps(self._about(scene), separators=(",", ":")))
+        self._tell(json.dumps(self._plan_data(scene), separators=(",", ":")))
 
     def _seen(self) -> Scene:
         """The scene; of a home the storey of what is shown, the lowest where everything is."""
@@ -128,7 +128,7 @@ class Plan:
             self._told = told
             self._teller.content = run_once(f"window.__dioPlan.told({told})")
 
-    def _about(self, scene: Scene) -> dict[str, Any]:
+    def _plan_data(self, scene: Scene) -> dict[str, Any]:
         client = self._client
         visible = [o for o in scene.objects if not o.hidden]
         room = room_lines(scene.architecture.planes, visible, scene)
@@ -150,7 +150,7 @@ class Plan:
         }
 
     def _piece(self, scene: Scene, item: SceneObject) -> dict[str, Any]:
-        outlines, along = self._outlines.of(item), None
+        outlines, along = self._outlines.object_outlines(item), None
         if item.category in OPENING_CATEGORIES:
             wall = wall_of(item, scene.architecture.by_role("wall"), scene)
             along = None if wall is None else [-float(wall.normal[1]), float(wall.normal[0])]

@@ -65,14 +65,14 @@ class Projects:
         if session.project is None:
             self._status.show(f'<div class="card">{text(_("No project is open."))}</div>')
         else:
-            named, versions = session.glances.of("versions", partial(_name_and_versions, session.project))
+            named, versions = session.glances.get("versions", partial(_name_and_versions, session.project))
             self._status.show(
                 f"{named}<p class='dim' style='margin-top:4px'>{text(_what_becomes_of_changes(session))}</p>{versions}"
             )
         notes = "".join(f"<p>{library_text(note)}.</p>" for note in session.notes[:6])
         title = f"<h4>{text(_('How this scene was made'))}</h4>"
         self._notes.show(f'{title}<div class="card">{notes}</div>' if notes else "")
-        self._list.show(session.glances.of("projects", self._listed))
+        self._list.show(session.glances.get("projects", self._listed))
 
     def _listed(self) -> str:
         """The projects that were changed last."""

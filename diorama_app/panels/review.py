@@ -146,7 +146,7 @@ class Review:
             Image.fromarray(rgba).save(buffer, "PNG")
             return buffer.getvalue()
 
-        return session.thumbnails.of(f"{item.shape_id} {view} {paint}", draw)
+        return session.thumbnails.picture_html(f"{item.shape_id} {view} {paint}", draw)
 
     def _crop(self, item: SceneObject | None, question: Question) -> str:
         """The object in the photo, as an image of the page."""

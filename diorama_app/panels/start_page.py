@@ -176,7 +176,7 @@ class StartPage:
             f'<img alt="" src="{_picture(kind)}"><b>{text(_(name))}</b></button>'
             for kind, name in EXAMPLES.items()
         )
-        earlier = self._client.session.glances.of("start", self._earlier)
+        earlier = self._client.session.glances.get("start", self._earlier)
         return (
             f'<div class="page" role="dialog" aria-modal="true" aria-label="{text(_("Start"))}"><header>'
             f"<h1>Diorama</h1><p>{text(_('One photo of a room becomes a 3D scene you can edit.'))}</p>"

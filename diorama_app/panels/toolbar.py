@@ -159,7 +159,7 @@ def title_bar(client: Client) -> str:
     """Name of the project and the other connected clients."""
     session = client.session
     project = session.project
-    name = text(_("No project")) if project is None else text(session.glances.of("name", lambda: project.name))
+    name = text(_("No project")) if project is None else text(session.glances.get("name", lambda: project.name))
     others = [g for g in session.clients.values() if g is not client]
     here = "".join(
         f' <span class="chip" style="border-color:rgb{g.colour}" '

@@ -77,7 +77,7 @@ def start_outline(client: Client, object_id: str) -> MaskDraft:
     assert item.box_px is not None
     mask = given_outline(inputs, item.box_px)
     if mask is None:
-        mask = EmbeddedMasks().inside_box(inputs.photo.rgb, item.box_px)[0]
+        mask = EmbeddedMasks().segment_box(inputs.photo.rgb, item.box_px)[0]
     return MaskDraft(inputs.photo.rgb, item.box_px, mask)
 
 

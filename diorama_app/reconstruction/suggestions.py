@@ -94,7 +94,7 @@ class Suggestions:
         self._ask(("outline", box), lambda: self._trace(box))
         return None
 
-    def at(self, x: float, y: float, marked: Sequence[Box], then: Callable[[LabelledBox | None], None]) -> None:
+    def suggest(self, x: float, y: float, marked: Sequence[Box], then: Callable[[LabelledBox | None], None]) -> None:
         """Tell what somebody means who clicks on a pixel of the photo.
 
         Args:
@@ -193,7 +193,7 @@ class Suggestions:
         from diorama_core.perception.masks import EmbeddedMasks
 
         if box == self._wanted:
-            self._outline = box, EmbeddedMasks().inside_box(self.photo.rgb, box)[0]
+            self._outline = box, EmbeddedMasks().segment_box(self.photo.rgb, box)[0]
         self._asked.discard(("outline", box))
 
     def _clicked(self, x: float, y: float, marked: Sequence[Box]) -> LabelledBox | None:

@@ -149,7 +149,7 @@ def take_picture(client: Client, view: PictureView, width: int) -> None:
         session.jobs.start("picture", _("Rendering a turntable film"), film)
         return
     if view == "here":
-        scene = replace(scene, camera=client.view.camera.for_picture(*size))
+        scene = replace(scene, camera=client.view.camera.to_picture_camera(*size))
     still = partial(_still, client, scene, size, f"{stem}-{size[0]}x{size[1]}.png")
     session.jobs.start("picture", _("Rendering a picture"), still)
 

@@ -156,7 +156,7 @@ class Client:
         from diorama_core.geometry.sphere import perspective  # OpenCV; a scene without such a photo opens without it
 
         photo, look = sphere.inputs.photo, self.view.camera
-        camera, known = look.for_picture(round(SPHERE_VIEW_PX * look.aspect), SPHERE_VIEW_PX), self._sphere_shown
+        camera, known = look.to_picture_camera(round(SPHERE_VIEW_PX * look.aspect), SPHERE_VIEW_PX), self._sphere_shown
         if known is None or known[0] is not photo or known[1] != camera:
             R_sphere_camera = T_world_sphere[:3, :3].T @ camera.T_world_camera[:3, :3]
             rgb = perspective(photo.rgb, R_sphere_camera, camera.intrinsics)

@@ -34,7 +34,7 @@ Problems = Mapping[str, tuple[str, ...]]
 def problems(scene: Scene, library: ShapeLibrary, collisions: Collisions) -> Problems:
     """By object id, what is wrong with it, in a word each; nothing for objects that are fine."""
     found: dict[str, list[str]] = {}
-    for pair in collisions.of(scene, [o.id for o in scene.objects]):
+    for pair in collisions.pairs(scene, [o.id for o in scene.objects]):
         for object_id in pair:
             if COLLIDES not in found.setdefault(object_id, []):
                 found[object_id].append(COLLIDES)

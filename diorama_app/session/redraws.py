@@ -127,8 +127,8 @@ class Glances:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._seen: TTLCache[Hashable, Any] = TTLCache(maxsize=64, ttl=FRESH_S, timer=clock)
 
-    def of(self, what: Hashable, look: Callable[[], T]) -> T:
-        """What `look` gives, or gave a moment ago for the same `what`; what it raises is raised each time."""
+    def get(self, what: Hashable, look: Callable[[], T]) -> T:
+        """The value of `look`, or its value a moment ago for the same `what`; what it raises is raised each time."""
         seen = self._seen.get(what)  # it may grow old between two questions
         if seen is None:
             seen = self._seen[what] = (look(),)

@@ -175,7 +175,7 @@ class ViewCamera:
         point = position + along * ahead if along > 0 else self.target_point
         return np.array([point[0], point[1], height_m])
 
-    def for_picture(self, width: int, height: int) -> Camera:
+    def to_picture_camera(self, width: int, height: int) -> Camera:
         """This view as a camera for a picture of the given size (px), with the same vertical field of view."""
         focal = 0.5 * height / float(np.tan(0.5 * self.fov_rad))
         T_world_camera = np.eye(4)

@@ -94,10 +94,10 @@ class RoomLightView:
         self._show_main(scene, settings, outside)
         self._show_sun(scene, settings, outside, node_name)
         self._show_lamps(scene, settings, node_name)
-        self.told = self._about(scene, settings, outside, node_name)
+        self.told = self._light_data(scene, settings, outside, node_name)
 
-    def _about(self, scene: Scene, settings: LightSettings, outside: Daylight | None, node_name: NodeName) -> str:
-        """What pages cast shadows and let lamps glow by; "null" where there is nothing to do."""
+    def _light_data(self, scene: Scene, settings: LightSettings, outside: Daylight | None, node_name: NodeName) -> str:
+        """Data by which pages cast shadows and let lamps glow; "null" where there is nothing to do."""
         about: dict[str, Any] = {}
         if outside is not None and not self._low:
             corners = _corners(scene)

@@ -54,7 +54,7 @@ class Thumbnails:
             self._painted.get(name, lambda: (shape_id, paint))
         return f'<img alt="" loading="lazy" src="{PICTURES}{name}.png">'
 
-    def of(self, what: str, draw: Callable[[], bytes | None]) -> str:
+    def picture_html(self, what: str, draw: Callable[[], bytes | None]) -> str:
         """HTML of a picture that is no shape's, drawn when a browser asks for it.
 
         Args:

@@ -40,18 +40,18 @@ class Bridge:
 
     async def recv(self) -> str | bytes:
         """The next message; raises `ConnectionClosed` when the browser went away."""
-        message: str | bytes = await self._at_home(self._connection.recv())
+        message: str | bytes = await self._run_at_home(self._connection.recv())
         return message
 
     async def send(self, message: bytes) -> None:
         """Send a message, waiting while the browser is slow to take it."""
-        await self._at_home(self._connection.send(message))
+        await self._run_at_home(self._connection.send(message))
 
     async def close(self, code: int = 1000, reason: str = "") -> None:
         """Say goodbye."""
-        await self._at_home(self._connection.close(code, reason))
+        await self._run_at_home(self._connection.close(code, reason))
 
-    def _at_home(self, work: Coroutine[Any, Any, Any]) -> Awaitable[Any]:
+    def _run_at_home(self, work: Coroutine[Any, Any, Any]) -> Awaitable[Any]:
         return asyncio.wrap_future(asyncio.run_coroutine_threadsafe(work, self._home))
 
 

@@ -214,7 +214,7 @@ def _shines(item: SceneObject, pixels: SlotPixels, view: SurfaceView, rgb: UInt8
     """Whether what is seen in place of a lamp's metal or wood is its light: that is no colour of a material."""
     if item.category not in LAMPS or pixels.slot.role not in ("metal", "wood", "paint"):
         return False
-    return bool(np.median(view.of(rgb)[pixels.near].max(axis=1)) >= SHINING)
+    return bool(np.median(view.crop(rgb)[pixels.near].max(axis=1)) >= SHINING)
 
 
 def _box_pixels(detected: DetectedObject) -> Bool[np.ndarray, "h w"]:

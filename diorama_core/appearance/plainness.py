@@ -59,7 +59,7 @@ def shows_plain(
     whole = cv2.cvtColor(texture, cv2.COLOR_RGB2GRAY).astype(np.float32)
     small = cv2.resize(whole, (side, side), interpolation=cv2.INTER_AREA) if side < min(whole.shape) else whole
     expected = contrast(small, np.ones(small.shape, dtype=bool))
-    seen = contrast(cv2.cvtColor(np.ascontiguousarray(view.of(rgb)), cv2.COLOR_RGB2GRAY).astype(np.float32), inside)
+    seen = contrast(cv2.cvtColor(np.ascontiguousarray(view.crop(rgb)), cv2.COLOR_RGB2GRAY).astype(np.float32), inside)
     return expected >= SETTINGS.visible and seen < SETTINGS.much_less * expected
 
 

@@ -128,8 +128,8 @@ def slot_pixels(
         background: Pixels in its box that show what is behind or below it.
         faces: Names of slots whose print was read from the photo.
     """
-    seen, colours = view.of(visible) & (view.slot >= 0), view.of(rgb)
-    shown = view.of(unhidden) & (cv2.erode((view.slot >= 0).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0)
+    seen, colours = view.crop(visible) & (view.slot >= 0), view.crop(rgb)
+    shown = view.crop(unhidden) & (cv2.erode((view.slot >= 0).astype(np.uint8), np.ones((5, 5), np.uint8)) > 0)
     together = seen.sum() >= SETTINGS.min_outlined * shown.sum()
     lab = cv2.cvtColor(np.ascontiguousarray(colours, dtype=np.float32) / 255.0, cv2.COLOR_RGB2Lab)
     of_slots: dict[int, Bool[np.ndarray, "gh gw"]] = {}
@@ -145,7 +145,7 @@ def slot_pixels(
         large = count * view.step**2 >= SETTINGS.min_pixels
         if read and large and count >= SETTINGS.min_visible * max(seen.sum(), shown.sum()):
             of_slots[index] = mine
-    beside = view.of(background) & (view.slot < 0)
+    beside = view.crop(background) & (view.slot < 0)
     seeds = _own_colours(lab, of_slots, beside)
     pixels_of_slots = []
     like = {index: _alike(lab, seeds[index]) for index in of_slots}
@@ -173,7 +173,7 @@ def whole_pixels(
         slots: Its slots.
         visible: The object's inner pixels, without what stands before it.
     """
-    seen = view.of(visible) & (view.slot >= 0)
+    seen = view.crop(visible) & (view.slot >= 0)
     if np.count_nonzero(seen) * view.step**2 < MIN_OF_WHOLE:
         return ()
     main = ((k, s) for k, s in enumerate(slots) if s.main and (s.role in READ_ROLES or s.role == "glass"))
@@ -296,7 +296,7 @@ def shade_of(view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 
         pixels: The slot's.
         rgb: The photo.
     """
-    linear = luminance(srgb_to_linear(view.of(rgb)[pixels.near] / 255.0))
+    linear = luminance(srgb_to_linear(view.crop(rgb)[pixels.near] / 255.0))
     label, count = cells_of(np.round(view.normals_world[pixels.near] / SETTINGS.normal_cell))
     of = [label == k for k in np.flatnonzero(count >= SETTINGS.min_face_pixels)]
     normals = np.array([view.normals_world[pixels.near][m].mean(axis=0) for m in of]).reshape(-1, 3)
@@ -321,8 +321,8 @@ def appearance_of(
         light: How much falls on every pixel of the photo.
         weave: The texture that the slot has in the library; it gives way to a plain one where the photo shows none.
     """
-    linear = srgb_to_linear(view.of(rgb)[pixels.near] / 255.0)
-    lit = view.of(light)[pixels.near]
+    linear = srgb_to_linear(view.crop(rgb)[pixels.near] / 255.0)
+    lit = view.crop(light)[pixels.near]
     usual, metallic = ROUGHNESS[pixels.slot.role]
     roughness = roughness_seen(linear / lit, metallic, usual)
     albedo = np.median(without_gloss(linear / lit, metallic, roughness, view.cosine[pixels.near][:, None]), axis=0)

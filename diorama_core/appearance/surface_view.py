@@ -32,7 +32,7 @@ class SurfaceView:
     cosine: Float32[np.ndarray, "h w"]
     """Cosine of the angle between the normal and the direction to the camera; 0 where the shape is not met."""
 
-    def of(self, image: np.ndarray) -> np.ndarray:
+    def crop(self, image: np.ndarray) -> np.ndarray:
         """These pixels of a picture or a mask of the photo's size."""
         height, width = self.slot.shape
         rows = slice(self.top, self.top + height * self.step, self.step)

@@ -76,7 +76,7 @@ def is_out_of_reach(
         # How far the floor reaches is a guess where it was not seen; how high it is, is not.
         return away - overhang_m(plane, item.pose.position) > OUT_OF_REACH_M
     parent = scene.object(edge.parent)
-    place = choose_surface(scene, item, edge, library.shape(parent.shape_id)).in_world(parent.pose)
+    place = choose_surface(scene, item, edge, library.shape(parent.shape_id)).to_world(parent.pose)
     if edge.relation == "mounted on":
         return resting_cost(scene, item, edge, place) > OUT_OF_REACH_M
     if measured:

@@ -81,7 +81,7 @@ def support_hypotheses(
         o.id: tuple(
             world
             for place in object_surfaces(library.shape(o.shape_id), o)
-            if float((world := place.in_world(o.pose)).normal @ UP_WORLD) > np.cos(np.deg2rad(25.0))
+            if float((world := place.to_world(o.pose)).normal @ UP_WORLD) > np.cos(np.deg2rad(25.0))
         )
         for o in scene.objects
     }

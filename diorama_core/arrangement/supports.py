@@ -176,7 +176,7 @@ def _share_to_object(scene: Scene, item: SceneObject, carrier: SceneObject, libr
     if scene.camera is None:
         return 1.0
     eye = scene.camera.position
-    places = [place.in_world(carrier.pose) for place in object_surfaces(library.shape(carrier.shape_id), carrier)]
+    places = [place.to_world(carrier.pose) for place in object_surfaces(library.shape(carrier.shape_id), carrier)]
     shares = np.geomspace(NEAREST, FARTHEST, _SHARES)
     corners = eye + shares[:, None, None] * (item.corners_world - eye)
     costs = [

@@ -70,11 +70,11 @@ class RestingSurface:
         offset = (outward * polygon[long]).sum(axis=1)
         return cls(polygon, normal, outward, offset, float(normal @ polygon.mean(axis=0)), clearance_m, of_plane)
 
-    def in_world(self, pose: Pose | None) -> RestingSurface:
+    def to_world(self, pose: Pose | None) -> RestingSurface:
         """The surface at its owner's pose."""
-        return self if pose is None else self.at(pose.R_world_object, pose.position, pose.scale)
+        return self if pose is None else self.transform(pose.R_world_object, pose.position, pose.scale)
 
-    def at(self, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> RestingSurface:
+    def transform(self, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> RestingSurface:
         """The surface of an owner with this rotation, centre and scale.
 
         Args:
@@ -173,7 +173,7 @@ def choose_surface(scene: Scene, item: SceneObject, edge: Support, supporter: Sh
     if len(options) == 1:
         return options[0]
     pose = scene.object(edge.parent).pose
-    return min(options, key=lambda s: misfit(item, s.in_world(pose)))
+    return min(options, key=lambda s: misfit(item, s.to_world(pose)))
 
 
 def possible_surfaces(
@@ -211,7 +211,7 @@ def _nearest_side(item: SceneObject, parent: SceneObject) -> RestingSurface:
     sides = [_box_face(parent.shape_size_m, axis, sign) for axis in (0, 1) for sign in (1.0, -1.0)]
 
     def gap(side: RestingSurface) -> float:
-        world = side.in_world(parent.pose)
+        world = side.to_world(parent.pose)
         return overhang_m(world, item.pose.position) + abs(float(world.normal @ item.pose.position) - world.level)
 
     return min(sides, key=gap)
@@ -422,7 +422,7 @@ def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape) -> list[
     """
     if other.id == item.id:
         return []
-    candidates = (surface.in_world(other.pose) for surface in object_surfaces(shape, other))
+    candidates = (surface.to_world(other.pose) for surface in object_surfaces(shape, other))
     centre = item.pose.position
     return [w for w in candidates if w.level < float(w.normal @ centre) and overhang_m(w, centre) < NEAR_SURFACE_M]
 

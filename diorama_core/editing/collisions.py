@@ -30,7 +30,7 @@ class Collisions:
         self._library = library
         self._trees: LruCache[tuple[str, tuple[float, ...]], fcl.BVHModel] = LruCache(CACHE_SIZE)
 
-    def of(self, scene: Scene, ids: Iterable[str], poses: Mapping[str, Pose] | None = None) -> frozenset[Pair]:
+    def pairs(self, scene: Scene, ids: Iterable[str], poses: Mapping[str, Pose] | None = None) -> frozenset[Pair]:
         """Pairs (a chosen object, any other) that collide.
 
         Args:

@@ -156,7 +156,7 @@ class Slide:
         edge = self.scene.support_of(self.item.id)
         hung = edge is not None and bool(self.places) and not self.places[0].upward
         if hung:
-            return self._on_walls(eye, direction)
+            return self._slide_on_walls(eye, direction)
         return self._standing(eye, direction)
 
     def _standing(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, SupportTarget | None]:
@@ -183,7 +183,7 @@ class Slide:
         distance = (self.grabbed[2] - eye[2]) / direction[2]
         return eye + distance * direction if 0 < distance < 50.0 else None
 
-    def _on_walls(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, SupportTarget | None]:
+    def _slide_on_walls(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, SupportTarget | None]:
         item, start = self.item, self._start_surface()
         lift = float(start.normal @ self.grabbed) - start.level
         hits = hits_along(eye, direction, self.places, lift_m=lift) or hits_along(

@@ -56,13 +56,13 @@ def with_opening(
     at_wall = [
         o for o in scene.objects if _is_before(o, wall, level - shape.size_m[2] / 2, level + shape.size_m[2] / 2)
     ]
-    wanted = float((at - foot.start) @ foot.along)
+    wanted = float((at - foot.start) @ foot.direction)
     spots = (_free_spot(wanted, half, foot, taken) for taken in ((*in_wall, *at_wall), in_wall))
     along = next((spot for spot in spots if spot is not None), None)
     if along is None:
         raise EditRefused(f"no part of this wall is free for a {category} of {2 * half:.2f} m; move what is in it")
     place = SupportTarget(plane_surface(wall), wall_id, of_object=False)
-    hit = Hit(place, np.append(foot.start + along * foot.along, level), 0.0)
+    hit = Hit(place, np.append(foot.start + along * foot.direction, level), 0.0)
     new_id = edits.fresh_id(scene, category)
     item, edge = insertion(scene, shape, new_id, hit, 0.0)
     return edits.insert(scene, item, edge), new_id
@@ -77,7 +77,7 @@ def _is_before(item: SceneObject, wall: Plane, low_m: float, high_m: float) -> b
 
 def _free_spot(wanted: float, half: float, foot: DrawnWall, taken: Iterable[SceneObject]) -> float | None:
     """The place along a wall, nearest to the wanted one, where nothing else is within half a width; None: nowhere."""
-    sides = [np.sort((o.corners_world[:, :2] - foot.start) @ foot.along)[[0, -1]] for o in taken]
+    sides = [np.sort((o.corners_world[:, :2] - foot.start) @ foot.direction)[[0, -1]] for o in taken]
     spots = [min(max(wanted, half), foot.length_m - half), *(s for a, b in sides for s in (a - half, b + half))]
     free = [
         float(s)

@@ -116,7 +116,7 @@ def _floor_stances(scene: Scene, item: SceneObject, relations: Sequence[Relation
         if high >= low:
             t = np.unique(np.concatenate([np.arange(low, high, STEP_M), [high, 0.5 * wall.length_m]]))
             t = t[(t >= low - 1e-9) & (t <= high + 1e-9)]
-            add(wall.start + t[:, None] * wall.along + wall.inward * (depth / 2 + WALL_GAP_M), wall.yaw_rad)
+            add(wall.start + t[:, None] * wall.direction + wall.inward * (depth / 2 + WALL_GAP_M), wall.yaw_rad)
     targets = [scene.object(t) for r in relations for t in r.targets if scene.has_object(t)]
     turns = frame.axis_rad + np.arange(4) * np.pi / 2
     for target in targets:
@@ -256,7 +256,7 @@ def _wall_candidates(scene: Scene, item: SceneObject, above: Sequence[str], fram
             low_z = centre - height / 2
             if category(item.category).name in ("curtain", "door"):
                 low_z = frame.floor_m + 0.01
-            places.append(wall.start + t * wall.along + wall.inward * item.size_m[0] / 2)
+            places.append(wall.start + t * wall.direction + wall.inward * item.size_m[0] / 2)
             yaws.append(wall.yaw_rad)
             base.append(low_z)
             supports.append(Support(item.id, wall.id, "mounted on", child_face="back"))

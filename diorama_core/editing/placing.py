@@ -70,7 +70,7 @@ def places_of(scene: Scene, library: ShapeLibrary, without: Iterable[str] = ()) 
         if not shape.surfaces:
             continue
         for index, surface in enumerate(object_surfaces(shape, item)):
-            places.append(SupportTarget(surface.in_world(item.pose), item.id, of_object=True, index=index))
+            places.append(SupportTarget(surface.to_world(item.pose), item.id, of_object=True, index=index))
     return tuple(places)
 
 

@@ -95,7 +95,7 @@ def set_wall_length(scene: Scene, wall_id: str, length_m: float) -> Scene:
     after = [c.second for c in corners(scene) if c.first == wall_id]
     before = [c.first for c in corners(scene) if c.second == wall_id]
     for end, sign in [*((feet[i], 1.0) for i in after), *((feet[i], -1.0) for i in before)]:
-        lever = sign * float(end.outward @ wall.along)
+        lever = sign * float(end.outward @ wall.direction)
         if abs(lever) > SQUARE:
             return move_plane(scene, end.id, (length_m - wall.length_m) * lever)
     raise EditRefused("no other wall stands at its ends; drag a wall instead")
@@ -174,13 +174,13 @@ def split_wall(scene: Scene, wall_id: str, at: Point) -> Scene:
     foot = next((f for f in wall_feet(scene) if f.id == wall_id), None)
     if foot is None:
         raise EditRefused("only walls can be split; choose a wall of the plan")
-    along = float((np.asarray(at, dtype=np.float64) - foot.start) @ foot.along)
+    along = float((np.asarray(at, dtype=np.float64) - foot.start) @ foot.direction)
     if not SHORTEST_PART_M <= along <= foot.length_m - SHORTEST_PART_M:
         raise EditRefused(
             f"a wall's parts are at least {100 * SHORTEST_PART_M:g} cm long; split it farther from its ends"
         )
-    wall, direction = scene.plane(wall_id), np.append(foot.along, 0.0)
-    level = float(foot.start @ foot.along) + along
+    wall, direction = scene.plane(wall_id), np.append(foot.direction, 0.0)
+    level = float(foot.start @ foot.direction) + along
     left = replace(wall, polygon=clip_polygon(wall.polygon, -direction, -level))
     right = replace(wall, id=fresh_id(scene, "wall"), polygon=clip_polygon(wall.polygon, direction, level))
     ends = [c for c in left.polygon if abs(float(c @ direction) - level) < 1e-6]

@@ -91,8 +91,8 @@ class Positioner:
             return moved if spot.support is None else edits.attach(moved, spot.support)
         return edits.insert(scene, replace(item, pose=spot.pose), spot.support)
 
-    def inside(self, scene: Scene, object_id: str) -> bool:
-        """Whether an object's outline is within the room."""
+    def is_inside(self, scene: Scene, object_id: str) -> bool:
+        """True for an object whose outline is within the room."""
         quad = footprint_of(scene.object(object_id))
         return bool(lie_within(quad[None], RoomFrame.of(scene).outline, 0.02)[0])
 
@@ -108,7 +108,7 @@ class Positioner:
                 shift = reach * np.array([np.cos(angle), np.sin(angle), 0.0])
                 trial = edits.move(scene, object_id, item.pose.moved(shift))
                 quad = footprint_of(trial.object(object_id))
-                if bool(lie_within(quad[None], frame.outline)[0]) and not self.collisions.of(trial, moved_ids):
+                if bool(lie_within(quad[None], frame.outline)[0]) and not self.collisions.pairs(trial, moved_ids):
                     return Spot(trial.object(object_id).pose, edge, float(reach))
         return None
 
@@ -121,7 +121,7 @@ class Positioner:
             pose = candidates.pose(item, int(k))
             support = candidates.supports[int(k)]
             trial = edits.insert(scene, replace(item, pose=pose), support)
-            if not self.collisions.of(trial, [item.id]):
+            if not self.collisions.pairs(trial, [item.id]):
                 return Spot(pose, support, float(cost[k]))
         return None
 

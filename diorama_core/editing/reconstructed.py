@@ -40,14 +40,14 @@ def inserted(scene: Scene, reconstruction: Found, library: ShapeLibrary) -> Scen
 def _clear(scene: Scene, object_id: str, library: ShapeLibrary) -> Scene:
     """The scene with an object that meets no other one and is in the room."""
     positioner = Positioner(library)
-    met = [j for pair in positioner.collisions.of(scene, [object_id]) for j in pair if j != object_id]
+    met = [j for pair in positioner.collisions.pairs(scene, [object_id]) for j in pair if j != object_id]
     outside = not _is_in_room(positioner, scene, object_id)
     if not met and not outside:
         return scene
     carriers = [o.id for o in scene.objects if o.id != object_id] if outside else []
     for carrier in dict.fromkeys([*met, *carriers]):
         on_it = moved_onto(scene, object_id, carrier, library)
-        if on_it is not None and not positioner.collisions.of(on_it, [object_id]):
+        if on_it is not None and not positioner.collisions.pairs(on_it, [object_id]):
             return on_it
     spot = None if outside else positioner.nearby(scene, object_id)
     if spot is not None:
@@ -63,7 +63,7 @@ def _is_in_room(positioner: Positioner, scene: Scene, object_id: str) -> bool:
     if scene.architecture.floor is None:
         return True
     above = float(item.corners_world[:, 2].min()) > floor_height(scene) - BELOW_M
-    return above and positioner.inside(scene, object_id)
+    return above and positioner.is_inside(scene, object_id)
 
 
 def moved_onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibrary) -> Scene | None:

@@ -31,14 +31,14 @@ class WallLine(ArrayValue):
         return float(np.linalg.norm(self.end - self.start))
 
     @property
-    def along(self) -> Float[np.ndarray, "2"]:
+    def direction(self) -> Float[np.ndarray, "2"]:
         """Unit, from left to right."""
         return (self.end - self.start) / self.length_m
 
     @property
     def inward(self) -> Float[np.ndarray, "2"]:
         """Unit, into the room."""
-        return np.array([self.along[1], -self.along[0]])
+        return np.array([self.direction[1], -self.direction[0]])
 
     @property
     def yaw_rad(self) -> float:
@@ -47,11 +47,11 @@ class WallLine(ArrayValue):
 
     def point(self, t_m: float, off_m: float = 0.0) -> Float[np.ndarray, "2"]:
         """The place `t_m` from the left end and `off_m` into the room."""
-        return self.start + self.along * t_m + self.inward * off_m
+        return self.start + self.direction * t_m + self.inward * off_m
 
     def t_of(self, xy: Float[np.ndarray, "*n 2"]) -> Float[np.ndarray, "*n"]:
         """How far along the wall points are."""
-        return np.asarray((np.asarray(xy) - self.start) @ self.along)
+        return np.asarray((np.asarray(xy) - self.start) @ self.direction)
 
     def off_of(self, xy: Float[np.ndarray, "*n 2"]) -> Float[np.ndarray, "*n"]:
         """How far before the wall points are."""
@@ -108,7 +108,7 @@ class RoomFrame:
         corners = []
         for a in self.walls:
             for b in self.walls:
-                turn = a.along[0] * b.along[1] - a.along[1] * b.along[0]
+                turn = a.direction[0] * b.direction[1] - a.direction[1] * b.direction[0]
                 if np.linalg.norm(a.end - b.start) < JOINED_M and turn < -0.5:
                     corners.append(0.5 * (a.end + b.start))
         return tuple(corners)

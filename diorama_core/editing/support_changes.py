@@ -38,7 +38,7 @@ def without_objects(scene: Scene, library: ShapeLibrary, object_ids: Iterable[st
     for load in loads:
         after = seated(after, library, load)
         removed = (load, *after.children_of(load))
-        spot = positioner.nearby(after, load) if positioner.collisions.of(after, removed) else None
+        spot = positioner.nearby(after, load) if positioner.collisions.pairs(after, removed) else None
         after = after if spot is None else edits.move(after, load, spot.pose)
     return after, loads
 

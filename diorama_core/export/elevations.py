@@ -49,8 +49,8 @@ def elevations(scene: ExportScene) -> tuple[FloorPlan, ...]:
 
 
 def _elevation(scene: ExportScene, wall: DrawnWall, name: str, items: Iterable[ExportObject]) -> FloorPlan:
-    axes = np.array([[*wall.along, 0.0], [0.0, 0.0, 1.0]])
-    origin = np.array([wall.start @ wall.along, wall.bottom_m])
+    axes = np.array([[*wall.direction, 0.0], [0.0, 0.0, 1.0]])
+    origin = np.array([wall.start @ wall.direction, wall.bottom_m])
     face = wall.plane.polygon @ axes.T - origin
     low, high = face.min(axis=0), face.max(axis=0)
     against = sorted(_against(scene, wall, items), key=lambda o: _back_distance_m(wall, o))
@@ -84,7 +84,7 @@ def _against(scene: ExportScene, wall: DrawnWall, items: Iterable[ExportObject])
     """Objects at a wall, and what stands on them; doors and windows are drawn as openings."""
     at_wall = set[str]()
     for item in items:
-        along = (item.item.corners_world[:, :2] - wall.start) @ wall.along
+        along = (item.item.corners_world[:, :2] - wall.start) @ wall.direction
         over = min(float(along.max()), wall.length_m) - max(float(along.min()), 0.0)
         if -AGAINST_M < _back_distance_m(wall, item) < AGAINST_M and over > APART_M:
             at_wall |= {item.id, *descendants(scene.scene, item.id)}

@@ -163,11 +163,11 @@ class ExportScene:
     """Where the scene comes from, as JSON values: program, photo, profile, warnings."""
 
     @cached_property
-    def _by_id(self) -> dict[str, ExportObject]:
+    def _objects_by_id(self) -> dict[str, ExportObject]:
         return {o.id: o for o in self.objects}
 
     @cached_property
-    def _below(self) -> dict[str | None, tuple[ExportObject, ...]]:
+    def _objects_by_parent(self) -> dict[str | None, tuple[ExportObject, ...]]:
         below: dict[str | None, tuple[ExportObject, ...]] = {}
         for item in self.objects:
             below[item.parent] = (*below.get(item.parent, ()), item)
@@ -204,11 +204,11 @@ class ExportScene:
 
     def object(self, object_id: str) -> ExportObject:
         """The exported object with this id; raises `KeyError` when it is not exported."""
-        return self._by_id[object_id]
+        return self._objects_by_id[object_id]
 
     def children_of(self, parent: str | None) -> tuple[ExportObject, ...]:
         """Exported objects directly below an object, or below the root."""
-        return self._below.get(parent, ())
+        return self._objects_by_parent.get(parent, ())
 
     def T_parent(self, item: ExportObject) -> Float[np.ndarray, "4 4"]:
         """The object's rigid transform in the frame of the object that carries it, or in the world."""

@@ -157,7 +157,7 @@ class _Builder:
 
     def _wall(self, wall: DrawnWall, storey: Any, holes: dict[str, Any]) -> Any:
         T = np.eye(4)
-        T[:2, 0], T[:2, 1], T[:2, 3], T[2, 3] = wall.along, wall.outward, wall.start, wall.bottom_m
+        T[:2, 0], T[:2, 1], T[:2, 3], T[2, 3] = wall.direction, wall.outward, wall.start, wall.bottom_m
         place = self._to.placement(T, storey.ObjectPlacement)
         t, height = max(wall.plane.thickness, MIN_WALL_M), wall.top_m - wall.bottom_m
         box = self._to.box((0.0, 0.0, 0.0), (wall.length_m, t, height))

@@ -46,8 +46,8 @@ class BodyOutline:
     points: Points
     """Its corners in the world."""
 
-    def between(self, low: float, high: float) -> BaseGeometry:
-        """What it covers of the floor between two heights of the world; empty where it is not there."""
+    def section_between(self, low: float, high: float) -> BaseGeometry:
+        """Floor that it covers between two heights of the world; empty where it is not there."""
         part: Points | None = self.points
         for normal, level in ((np.array([0.0, 0.0, 1.0]), low), (np.array([0.0, 0.0, -1.0]), -high)):
             part = None if part is None else cut(part, normal, level, np.inf)
@@ -79,7 +79,7 @@ def floor_area(gathered: ExportScene) -> BaseGeometry:
 def occupied_area(gathered: ExportScene, bodies: Iterable[BodyOutline]) -> BaseGeometry:
     """What stands in a robot's way, seen from above."""
     level = floor_level(gathered)
-    return shapely.unary_union([b.between(level + LOW_M, level + HIGH_M) for b in bodies])
+    return shapely.unary_union([b.section_between(level + LOW_M, level + HIGH_M) for b in bodies])
 
 
 def walkable(floor: BaseGeometry, occupied: BaseGeometry, radius_m: float) -> tuple[Polygon, ...]:

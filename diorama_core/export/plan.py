@@ -281,8 +281,8 @@ def _is_before_a_wall(piece: manifold3d.CrossSection, walls: Sequence[DrawnWall]
     points = np.concatenate([np.asarray(o) for o in piece.to_polygons()])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     for wall in walls:
-        foot = wall.at(float((middle - wall.start) @ wall.along))
-        inside = 0.0 <= float((middle - wall.start) @ wall.along) <= wall.length_m
+        foot = wall.point_at(float((middle - wall.start) @ wall.direction))
+        inside = 0.0 <= float((middle - wall.start) @ wall.direction) <= wall.length_m
         before = float((middle - wall.start) @ wall.outward) < 0.0
         if inside and before and not any(_crosses(middle, foot, w) for w in walls if w is not wall):
             return True
@@ -294,7 +294,7 @@ def _crosses(start: Float[np.ndarray, "2"], end: Float[np.ndarray, "2"], wall: D
     a, b = (float((p - wall.start) @ wall.outward) for p in (start, end))
     if a * b >= 0.0:
         return False
-    at = float((start + a / (a - b) * (end - start) - wall.start) @ wall.along)
+    at = float((start + a / (a - b) * (end - start) - wall.start) @ wall.direction)
     return 0.0 <= at <= wall.length_m
 
 
@@ -332,7 +332,7 @@ def _meets(point: Float[np.ndarray, "2"], ends: Sequence[Float[np.ndarray, "2"]]
 
 def _strip(wall: DrawnWall, from_m: float, to_m: float, near_m: float, far_m: float) -> Outline:
     corners = ((from_m, near_m), (to_m, near_m), (to_m, far_m), (from_m, far_m))
-    return np.stack([wall.at(along, behind) for along, behind in corners])
+    return np.stack([wall.point_at(along, behind) for along, behind in corners])
 
 
 def _polygon(outline: Outline) -> shapely.Geometry:
@@ -347,7 +347,7 @@ def _area(outline: Outline) -> manifold3d.CrossSection:
 def _door(wall: DrawnWall, opening: Opening, swing: DoorSwing | None) -> tuple[Outline, ...]:
     """Each leaf as far open as it goes and the arc it swings through; one that does not open is drawn shut."""
     if swing is None or not swing.can_open:
-        return (np.stack([wall.at(opening.from_m), wall.at(opening.to_m)]),)
+        return (np.stack([wall.point_at(opening.from_m), wall.point_at(opening.to_m)]),)
     angles = np.linspace(0, swing.free_rad, ARC_POINTS)
     lines: list[Outline] = []
     for leaf in swing.leaves:
@@ -359,7 +359,7 @@ def _door(wall: DrawnWall, opening: Opening, swing: DoorSwing | None) -> tuple[O
 def _window(wall: DrawnWall, opening: Opening) -> tuple[Outline, ...]:
     t = wall.plane.thickness
     depths = (0.0, 0.4 * t, 0.6 * t, t)
-    return tuple(np.stack([wall.at(opening.from_m, d), wall.at(opening.to_m, d)]) for d in depths)
+    return tuple(np.stack([wall.point_at(opening.from_m, d), wall.point_at(opening.to_m, d)]) for d in depths)
 
 
 def _dimensions(walls: Sequence[DrawnWall], floors: Sequence[Outline]) -> tuple[Dimension, ...]:
@@ -384,7 +384,7 @@ def _dimensions(walls: Sequence[DrawnWall], floors: Sequence[Outline]) -> tuple[
 def _wall_dimensions(wall: DrawnWall) -> list[Dimension]:
     first = (wall.plane.thickness + DIMENSION_GAP_M) * wall.outward
     stops = [0.0, *(v for o in wall.openings for v in (o.from_m, o.to_m)), wall.length_m]
-    parts = [Dimension(wall.at(a), wall.at(b), first) for a, b in pairwise(stops) if b - a > 0.02]
+    parts = [Dimension(wall.point_at(a), wall.point_at(b), first) for a, b in pairwise(stops) if b - a > 0.02]
     if len(parts) < 2:
         return [Dimension(wall.start, wall.end, first)]
     return [*parts, Dimension(wall.start, wall.end, first + DIMENSION_GAP_M * wall.outward)]

@@ -56,8 +56,8 @@ class Playground:
         return float(self._data.time)
 
     @property
-    def at_rest(self) -> bool:
-        """Whether nothing moves."""
+    def is_at_rest(self) -> bool:
+        """True if nothing moves."""
         return bool(np.abs(self._data.qvel).max(initial=0.0) < REST_M_S)
 
     def step(self, seconds: float) -> None:

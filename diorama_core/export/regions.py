@@ -77,7 +77,7 @@ def _surfaces(gathered: ExportScene, body: RigidBody) -> Iterator[tuple[str | No
     if not shape.surfaces and not gathered.children_of(node.id):
         return
     for surface in object_surfaces(shape, node.item):
-        scaled = surface.at(np.eye(3), np.zeros(3), node.scale)
+        scaled = surface.transform(np.eye(3), np.zeros(3), node.scale)
         if min(np.ptp(scaled.polygon[:, :2], axis=0)) >= MIN_SIDE_M and node.T_world[2, 2] > LEVEL:
             below = scaled.polygon.mean(axis=0) - [0.0, 0.0, ABOVE_M]
             yield next((m.limb.slug for m in body.moving if any(_holds(p, below) for p in m.parts)), None), scaled
@@ -132,7 +132,7 @@ def _left(
             continue
         lowest[body.owner] = min(lowest.get(body.owner, np.inf), body.low)
         if body.low < level + headroom_m and body.high > level + ABOVE_M:
-            covers.append((body.owner, body.between(level + ABOVE_M, level + headroom_m).intersection(area)))
+            covers.append((body.owner, body.section_between(level + ABOVE_M, level + headroom_m).intersection(area)))
     holds = (o for o, covered in covers if covered.area > 0 and abs(lowest[o] - level) < NEAR_M)
     return area.difference(shapely.unary_union([c for _, c in covers])), tuple(dict.fromkeys(holds))
 

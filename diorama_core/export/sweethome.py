@@ -169,7 +169,7 @@ def _world_points(scene: ExportScene, item: ExportObject) -> Float[np.ndarray, "
 def _wall(wall: DrawnWall, number: int) -> dict[str, str]:
     """The wall's middle line; its inner face is where the scene has it."""
     half = wall.plane.thickness / 2
-    (x0, y0), (x1, y1) = wall.at(0.0, half), wall.at(wall.length_m, half)
+    (x0, y0), (x1, y1) = wall.point_at(0.0, half), wall.point_at(wall.length_m, half)
     colour = _colour(wall.plane.colour)
     return {
         "id": f"wall{number}",

@@ -102,7 +102,7 @@ class Observed:
     def _part_around(self, caster: ShapeCaster, poses: PoseBatch) -> tuple[slice, slice]:
         """Rows and columns of all cells that the shape's box may cover in any pose: rays beside it meet nothing."""
         cells = self.window.cells
-        corners = poses.by_coordinate(caster.corners).reshape(3, -1) - self.origin_world[:, None]
+        corners = poses.apply_by_coordinate(caster.corners).reshape(3, -1) - self.origin_world[:, None]
         column, row, depth = self._to_cells @ corners
         if depth.min() <= NEAR_M:
             return slice(0, cells), slice(0, cells)
@@ -153,7 +153,7 @@ def observe(
         cells: Resolution of the window, both ways.
         margin: How far the window reaches beyond the box, as a share of the box.
     """
-    window = Window.around(box, margin, cells)
+    window = Window.from_box(box, margin, cells)
     height, width = mask.shape
     covered = window.coverage(mask)
     hidden = np.zeros_like(covered)
@@ -167,7 +167,7 @@ def observe(
         window=window,
         box=box,
         covered=covered if area > 0 else in_box.astype(np.float64),
-        weight=window.inside(width, height) * (1.0 - hidden),
+        weight=window.is_in_photo(width, height) * (1.0 - hidden),
         origin_world=np.asarray(camera.position),
         directions_world=camera.rays(window.centres_px),
         mask_trust=float(np.clip(mask_confidence, 0.0, 1.0)) * min(area / _FULLY_TRUSTED_AREA_PX, 1.0),

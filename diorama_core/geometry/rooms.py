@@ -126,7 +126,7 @@ def doorways(scene: Scene) -> tuple[Doorway, ...]:
     doorways_of_all: list[Doorway] = []
     for wall in walls:
         for opening in wall.openings:
-            middle = wall.at((opening.from_m + opening.to_m) / 2)
+            middle = wall.point_at((opening.from_m + opening.to_m) / 2)
             point = np.array([*middle, (opening.bottom_m + opening.top_m) / 2])
             for face in faces_behind(wall.plane, point, faces):
                 pair = in_rooms.get(wall.plane.id), in_rooms.get(face.id)
@@ -147,7 +147,7 @@ def _is_same(known: Doorway, first: str, second: str, at: tuple[float, float], o
 
 
 def _is_open_at(wall: DrawnWall, point: Float[np.ndarray, "3"]) -> bool:
-    along = float((point[:2] - wall.start) @ wall.along)
+    along = float((point[:2] - wall.start) @ wall.direction)
     return any(o.from_m <= along <= o.to_m and o.bottom_m <= point[2] <= o.top_m for o in wall.openings)
 
 

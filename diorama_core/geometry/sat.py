@@ -65,7 +65,7 @@ class PaddedParts:
     """Counts of vertices, normals and edges, without the padding."""
     owner: Int[np.ndarray, " b"]
 
-    def of(self, objects: Bool[np.ndarray, " n"]) -> PaddedParts:
+    def select(self, objects: Bool[np.ndarray, " n"]) -> PaddedParts:
         """The parts of some of the objects."""
         rows = objects[self.owner]
         return PaddedParts(

@@ -47,10 +47,10 @@ class PoseBatch:
 
     def apply(self, points_object: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "p n 3"]:
         """Shape points in the world under every pose."""
-        return self.by_coordinate(points_object).transpose(1, 2, 0)
+        return self.apply_by_coordinate(points_object).transpose(1, 2, 0)
 
-    def by_coordinate(self, points_object: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3 p n"]:
-        """Product coordinate by coordinate: one product for all poses, and the points side by side in memory."""
+    def apply_by_coordinate(self, points_object: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3 p n"]:
+        """Points of all poses by coordinate: one product for all poses, and the points side by side in memory."""
         rows = (self.R * self.scale[:, None, :]).transpose(1, 0, 2).reshape(-1, 3)
         return (rows @ points_object.T).reshape(3, len(self), len(points_object)) + self.position.T[..., None]
 
@@ -67,8 +67,8 @@ class ShapeHits:
     directions_world: Float[np.ndarray, "r 3"]
     poses: PoseBatch
 
-    def of_rays(self, chosen: Int[np.ndarray, "k"]) -> ShapeHits:
-        """Those of some rays alone."""
+    def select_rays(self, chosen: Int[np.ndarray, "k"]) -> ShapeHits:
+        """Hits of some rays alone."""
         return ShapeHits(
             self.depth_m[:, chosen],
             self.normals_object[:, chosen],
@@ -162,7 +162,7 @@ class ShapeCaster:
         """Boxes x1, y1, x2, y2 of the posed shape in the photo, clipped to it; NaN where it is out of sight."""
         corners, edges = self.hull
         T = camera.T_camera_world
-        points = T[:3, :3] @ poses.by_coordinate(corners).reshape(3, -1) + T[:3, 3:]
+        points = T[:3, :3] @ poses.apply_by_coordinate(corners).reshape(3, -1) + T[:3, 3:]
         return clipped_bounds(camera, points.reshape(3, len(poses), len(corners)), edges)
 
 

@@ -53,18 +53,18 @@ class DrawnWall:
         return float(np.linalg.norm(self.end - self.start))
 
     @property
-    def along(self) -> Float[np.ndarray, "2"]:
+    def direction(self) -> Float[np.ndarray, "2"]:
         """Unit direction from start to end."""
         return (self.end - self.start) / max(self.length_m, 1e-9)
 
     @property
     def outward(self) -> Float[np.ndarray, "2"]:
         """Unit direction out of the room."""
-        return np.array([-self.along[1], self.along[0]])
+        return np.array([-self.direction[1], self.direction[0]])
 
-    def at(self, distance_m: float, behind_m: float = 0.0) -> Float[np.ndarray, "2"]:
+    def point_at(self, distance_m: float, behind_m: float = 0.0) -> Float[np.ndarray, "2"]:
         """A point so far along the wall and so far behind its face."""
-        return self.start + distance_m * self.along + behind_m * self.outward
+        return self.start + distance_m * self.direction + behind_m * self.outward
 
 
 def wall_lines(planes: Iterable[Plane], items: Sequence[SceneObject], scene: Scene) -> tuple[DrawnWall, ...]:
@@ -105,7 +105,7 @@ def _with_openings(wall: DrawnWall, filled: Sequence[Opening]) -> DrawnWall:
 def _filled(wall: DrawnWall, item: SceneObject, *, is_behind: bool = False) -> Opening:
     """The opening of a door or window, which fills it in the face that it hangs on."""
     corners = item.corners_world
-    along = np.clip((corners[:, :2] - wall.start) @ wall.along, 0, wall.length_m)
+    along = np.clip((corners[:, :2] - wall.start) @ wall.direction, 0, wall.length_m)
     low, high = np.clip(corners[:, 2], wall.bottom_m, wall.top_m)[[corners[:, 2].argmin(), corners[:, 2].argmax()]]
     ends = float(along.min()), float(along.max())
     name, fill = (f"opening-{item.id}-behind", None) if is_behind else (f"opening-{item.id}", item.id)
@@ -116,7 +116,7 @@ def _gaps(wall: DrawnWall) -> list[Opening]:
     """Rectangles that the wall's polygon leaves out, other than at its ends and its top."""
     length, height = wall.length_m, wall.top_m - wall.bottom_m
     corners = wall.plane.polygon
-    flat = np.stack([(corners[:, :2] - wall.start) @ wall.along, corners[:, 2] - wall.bottom_m], axis=1)
+    flat = np.stack([(corners[:, :2] - wall.start) @ wall.direction, corners[:, 2] - wall.bottom_m], axis=1)
     whole = manifold3d.CrossSection([[[0, 0], [length, 0], [length, height], [0, height]]])
     rest = whole - manifold3d.CrossSection([flat], manifold3d.FillRule.NonZero)
     gaps = []

@@ -18,7 +18,7 @@ class Window:
     cells: int
 
     @classmethod
-    def around(cls, box: tuple[float, float, float, float], margin: float, cells: int) -> Window:
+    def from_box(cls, box: tuple[float, float, float, float], margin: float, cells: int) -> Window:
         """The window of a box widened on every side by `margin` of its size (at least two pixels).
 
         Args:
@@ -38,8 +38,8 @@ class Window:
         x, y = np.meshgrid(x1 + (x2 - x1) * steps, y1 + (y2 - y1) * steps)
         return np.stack([x.ravel(), y.ravel()], axis=1)
 
-    def inside(self, width: int, height: int) -> Bool[np.ndarray, "n"]:
-        """Whether a cell's centre lies in a photo of this size."""
+    def is_in_photo(self, width: int, height: int) -> Bool[np.ndarray, "n"]:
+        """True for cells whose centre lies in a photo of this size."""
         x, y = self.centres_px.T
         return (x >= 0) & (x < width) & (y >= 0) & (y < height)
 

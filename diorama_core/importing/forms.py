@@ -161,7 +161,7 @@ def _model(path: Path, progress: Progress, unit_m: float | None) -> Content:
     if not any(isinstance(g, trimesh.Trimesh) and len(g.faces) for g in raw.scene.geometry.values()):
         points = [np.asarray(g.vertices, float) for g in raw.scene.geometry.values() if hasattr(g, "vertices")]
         cloud = PointCloud(np.vstack(points) if points else np.zeros((0, 3)), None)
-        return cloud if unit_m is None else cloud.in_unit(unit_m)
+        return cloud if unit_m is None else cloud.to_unit(unit_m)
     to_world, notes = frame_of_scene(raw, unit_m)
     return _scan_or_parts(split_scene(raw.scene, to_world), notes)
 
@@ -172,7 +172,7 @@ def _scan_or_parts(parts: tuple[Part, ...], notes: tuple[str, ...]) -> Content:
 
 def _cloud(path: Path, progress: Progress, unit_m: float | None) -> Content:
     cloud = read_points(path)
-    return cloud if unit_m is None else cloud.in_unit(unit_m)
+    return cloud if unit_m is None else cloud.to_unit(unit_m)
 
 
 def _points(form: PointForm) -> SceneForm:

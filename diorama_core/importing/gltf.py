@@ -76,7 +76,7 @@ def _marked(path: Path) -> MarkedFile | None:
         written=as_ids(root.extras.get("diorama_objects")),
         planes={i: Z_UP @ n.M_world @ _to_stored(document, n.row, n.extras.get("bounds")) for i, n in planes.items()},
         T_world_camera=None if camera is None else Z_UP @ camera.M_world @ CAMERA_AXES,
-        pictures={i: p for i, n in planes.items() if (p := pictures.of_mesh(n.row.get("mesh"))) is not None},
+        pictures={i: p for i, n in planes.items() if (p := pictures.mesh_picture(n.row.get("mesh"))) is not None},
         material_pictures=pictures.from_photo(),
         provenance=as_mapping(root.extras.get("provenance")) or {},
         photo=as_bytes(root.extras.get("diorama_photo")),
@@ -171,7 +171,7 @@ class _Pictures:
         self._binary = binary
         self._references = references
 
-    def of_mesh(self, mesh: int | None) -> UInt8[np.ndarray, "h w 3"] | None:
+    def mesh_picture(self, mesh: int | None) -> UInt8[np.ndarray, "h w 3"] | None:
         """The picture of the first textured part; None where there is none that can be read."""
         if mesh is None:
             return None
@@ -199,21 +199,21 @@ class _Pictures:
         if "source" not in texture:
             return None
         image = self._document["images"][texture["source"]]
-        data = self._inside(image["bufferView"]) if "bufferView" in image else self._outside(image.get("uri", ""))
+        data = self._view_bytes(image["bufferView"]) if "bufferView" in image else self._uri_bytes(image.get("uri", ""))
         data = None if data is None else self._references.checked_image(data, str(image.get("name", "a picture")))
         if data is None:
             return None
         with Image.open(io.BytesIO(data), formats=IMAGE_FORMATS) as picture:
             return np.asarray(picture.convert("RGB"))
 
-    def _inside(self, view: int) -> bytes | None:
+    def _view_bytes(self, view: int) -> bytes | None:
         row = self._document["bufferViews"][view]
         buffer = self._document["buffers"][row["buffer"]]
-        data = self._outside(buffer["uri"]) if "uri" in buffer else self._binary
+        data = self._uri_bytes(buffer["uri"]) if "uri" in buffer else self._binary
         start = row.get("byteOffset", 0)
         return None if data is None else data[start : start + row["byteLength"]]
 
-    def _outside(self, uri: str) -> bytes | None:
+    def _uri_bytes(self, uri: str) -> bytes | None:
         if uri.startswith("data:"):
             return base64.b64decode(uri.partition(",")[2])
         return self._references.read(uri)

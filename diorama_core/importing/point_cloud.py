@@ -57,7 +57,7 @@ class PointCloud:
     unit_m: float = 1.0
     """Metres that one unit of the file was taken for."""
 
-    def in_unit(self, unit_m: float) -> PointCloud:
+    def to_unit(self, unit_m: float) -> PointCloud:
         """The cloud of a file whose unit is known to be another."""
         factor = unit_m / self.unit_m
         notes = tuple(note for note in self.notes if not note.startswith(GUESSED))

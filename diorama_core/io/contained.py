@@ -82,7 +82,7 @@ class ContainedFiles:
             error: as `path`.
         """
         shown_name = shown(str(path) if name is None else name)
-        inside = self._inside(path)
+        inside = self._relative_to_root(path)
         if inside is None:
             raise self.error(f"{shown_name} points outside the folder that was added")
         try:
@@ -128,7 +128,7 @@ class ContainedFiles:
             raise self.error(f"{shown(name)} is a web address; nothing is downloaded")
         return plain
 
-    def _inside(self, path: Path) -> Path | None:
+    def _relative_to_root(self, path: Path) -> Path | None:
         """The path below the root with every `..` taken out, before any link is looked at; None outside."""
         try:
             plain = Path(os.path.abspath(path)).relative_to(os.path.abspath(self.root))

@@ -136,7 +136,7 @@ def _gaps_m(
     """How badly each load agrees with standing on an object in another shape."""
     size_m, pose = candidate.shape_size_m, candidate.pose
     other = replace(item, shape_id=candidate.shape_id, shape_size_m=size_m, pose=pose)
-    surfaces = [s.in_world(pose) for s in object_surfaces(library.shape(candidate.shape_id), other)]
+    surfaces = [s.to_world(pose) for s in object_surfaces(library.shape(candidate.shape_id), other)]
     return [min(misfit(load, surface) for surface in surfaces) for load in loads]
 
 

@@ -97,7 +97,7 @@ def cost_values(
     supported = volumes.supported
     if not len(supported):
         return dict.fromkeys(("e_align", "e_sem", "e_place", "e_rel", "e_vol", "e_col"), 0.0)
-    here, size = volumes.at(R, p, scale), problem.shape_size * scale
+    here, size = volumes.world_volumes(R, p, scale), problem.shape_size * scale
     faces, half = contact_templates(problem, supported)
     corners = p[supported][:, None] + np.matmul(faces * scale[supported][:, None], R[supported].transpose(0, 2, 1))
     tilt = np.abs(np.matmul(here.normal[:, None, :], R[supported])[:, 0]) * half * scale[supported]
@@ -138,7 +138,7 @@ def support_errors(
         scale: along the axes of each object.
     """
     volumes = Volumes.of(problem)
-    here, supported = volumes.at(R, p, scale), volumes.supported
+    here, supported = volumes.world_volumes(R, p, scale), volumes.supported
     size, contact = problem.shape_size[supported] * scale[supported], problem.contact[supported]
     R_supported = R[supported]
     outward = np.matmul(R_supported, contact[..., None])[..., 0]
@@ -191,7 +191,7 @@ def part_overlaps(
     packed = problem.packed
     if only is not None:
         near = _neighbours(problem, only, R, p, scale) & apart[only]
-        packed = packed.of(near | (np.arange(problem.count) == only))
+        packed = packed.select(near | (np.arange(problem.count) == only))
     bodies = place_bodies(packed, R, p, scale)
     near_parts = np.triu(apart, 1)[bodies.owner[:, None], bodies.owner[None]]
     if only is not None:

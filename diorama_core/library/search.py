@@ -168,13 +168,13 @@ class TextIndex:
         category = np.zeros(len(self.shapes))
         for name in query.categories:
             for kin in _kin(name):
-                places = self._of_category(kin)
+                places = self._category_rows(kin)
                 category[places] = np.maximum(category[places], CATEGORY_POINTS if kin == name else KIN_POINTS)
         if described and not named:
             category *= 0.5  # a name that is only near beside a use that is told
         total = category.copy()
         for kind, share in described.items():
-            places = self._of_category(kind)
+            places = self._category_rows(kind)
             places = places[category[places] > 0] if named else places
             total[places] += (0.5 if named else 1.0) * DESCRIPTION_POINTS * share
         sizes: list[SizeRequest] = []
@@ -193,14 +193,14 @@ class TextIndex:
         if query.size_m is not None and (query.categories or not query.words):
             total[fits] += 2 * SIZE_POINTS * self._nearness(query.size_m)[fits]
         for limit in limits:
-            total -= LIMIT_POINTS * ~self._within(limit)
+            total -= LIMIT_POINTS * ~self._meets_limit(limit)
         return np.maximum(total, np.where(fits, 1e-6, 0.0))
 
     def knows(self, word: str) -> bool:
         """Whether any shape has the word, in its normal form, or one of its meaning."""
         return any(w in self._words for w in (word, *narrower(word)))
 
-    def _of_category(self, name: str) -> Int[np.ndarray, "m"]:
+    def _category_rows(self, name: str) -> Int[np.ndarray, "m"]:
         return self._categories.get(name, np.zeros(0, int))
 
     def _word(self, word: str, slips: bool = True) -> Float[np.ndarray, "n"]:
@@ -235,8 +235,8 @@ class TextIndex:
             relative[places] = (measure[places] - measure[places].mean()) / spread
         return np.clip(asked.sign * relative / 2, -1, 1)
 
-    def _within(self, limit: SizeLimit) -> Bool[np.ndarray, "n"]:
-        """Which shapes keep a limit."""
+    def _meets_limit(self, limit: SizeLimit) -> Bool[np.ndarray, "n"]:
+        """True for shapes that keep a limit."""
         depth, width, height = np.exp(self._log_sizes).T
         measure = {"height": height, "width": width, "depth": depth}[limit.of]
         return measure <= limit.metres if limit.most else measure >= limit.metres

@@ -213,7 +213,7 @@ class _Search:
         shared = self._shared(camera)
         met = tuple((thing, box) for thing, box in pairs if shared[thing, box] >= SETTINGS.same)
         odd = max(self._could_be_met - len(met), 0) + self._unmarked(camera, {thing for thing, _ in pairs})
-        if not contains_xy(room, *camera.position[:2]) or self._within_a_thing(camera):
+        if not contains_xy(room, *camera.position[:2]) or self._is_inside_object(camera):
             cost = np.inf
         return FoundCamera(camera, cost + SETTINGS.odd_cost * odd, met)
 
@@ -231,7 +231,7 @@ class _Search:
             count += int(k not in marked and common.max(initial=0.0) < area[k] / 2)
         return count
 
-    def _within_a_thing(self, camera: Camera) -> bool:
+    def _is_inside_object(self, camera: Camera) -> bool:
         away = [yaw_rotation(-t.yaw_rad) @ (camera.position - t.centre) for t in self._things]
         return any((np.abs(a) < t.size_m / 2).all() for a, t in zip(away, self._things, strict=True))
 

@@ -144,7 +144,7 @@ class _Edges:
         self.usual = max(self.usual, settings.noise)
         self._tensor = tensor
 
-    def along(
+    def edge_strength(
         self, azimuth: Float[np.ndarray, "..."], tangent: Float[np.ndarray, "..."], slope: Float[np.ndarray, "..."]
     ) -> Float32[np.ndarray, "..."]:
         """Strength, 0 to 1, of edges that run along a curve.
@@ -156,7 +156,7 @@ class _Edges:
         """
         azimuth, tangent, slope = np.broadcast_arrays(azimuth, tangent, slope)
         elevation = np.arctan(tangent)
-        tensor = self._at(self._tensor, azimuth, elevation, 0.5)  # a column of padding, half a pixel
+        tensor = self._sample(self._tensor, azimuth, elevation, 0.5)  # a column of padding, half a pixel
         # Azimuth grows to the left: the curve's normal in (east, north).
         across = np.stack([slope, np.cos(elevation)], axis=-1)
         across /= np.linalg.norm(across, axis=-1, keepdims=True)
@@ -169,7 +169,7 @@ class _Edges:
         strength = np.sqrt(np.maximum(power, 0.0)) * share**2
         return (strength / (strength + self.usual)).astype(np.float32)
 
-    def _at(
+    def _sample(
         self,
         of: Float32[np.ndarray, "h w2 3"],
         azimuth: Float[np.ndarray, "..."],
@@ -194,7 +194,7 @@ class _Edges:
         """
         off = np.angle(np.exp(1j * (azimuth - axis * QUARTER)))
         elevation = np.arctan(np.maximum(np.cos(off), 0.02)[:, None] / reach)
-        colour = self._at(self.lab, np.broadcast_to(azimuth[:, None], elevation.shape), elevation, -0.5)
+        colour = self._sample(self.lab, np.broadcast_to(azimuth[:, None], elevation.shape), elevation, -0.5)
         facing = (np.abs(off) < SETTINGS.widest_rad).astype(np.float32)[:, None]
         size = round(SETTINGS.along_deg * len(azimuth) / 360)
         weight = np.maximum(uniform_filter1d(facing, size, axis=0, mode="wrap"), 1e-3)
@@ -225,7 +225,7 @@ class _Edges:
         """
         off = azimuth - axis * QUARTER
         tangent = np.cos(off) / reach
-        strength = self.along(azimuth, tangent, -np.sin(off) / reach / (1 + tangent**2))
+        strength = self.edge_strength(azimuth, tangent, -np.sin(off) / reach / (1 + tangent**2))
         strength[self._hidden(azimuth, np.arctan(tangent))] = 0.0
         return strength
 
@@ -239,7 +239,7 @@ class _Edges:
             hidden |= beside & (elevation > thing.low - margin) & (elevation < thing.high + margin)
         return hidden
 
-    def before(
+    def nearer_than_feet(
         self, azimuth: Float[np.ndarray, "n"], axis: int, distances: Float[np.ndarray, "r"]
     ) -> Bool[np.ndarray, "n r"]:
         """Mask of walls that would be nearer than the foot of a thing that stands on the floor.
@@ -290,7 +290,7 @@ def _searched(edges: _Edges) -> tuple[tuple[_Wall, ...], float]:
         for at, m in enumerate(heights):
             shifted = ceiling[:, -m - low : -m - low + count]
             evidence[:, at, axis] = shifted + floor
-            evidence[:, at, axis] -= SETTINGS.before_cost * edges.before(azimuth, axis, np.exp(distances))
+            evidence[:, at, axis] -= SETTINGS.before_cost * edges.nearer_than_feet(azimuth, axis, np.exp(distances))
             evidence[away, at, axis] = -np.inf
         off = np.abs(np.cos(azimuth - axis * QUARTER))[:, None]
         far = (distances - np.log(off) - np.log(SETTINGS.away[0])) / SETTINGS.away[1]

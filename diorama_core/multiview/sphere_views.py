@@ -60,13 +60,13 @@ class SphereBox:
     labelled: LabelledBox
     """Its name; the box is the picture's that it was marked in."""
 
-    def beside(self, azimuth: float) -> float:
-        """Azimuth of its middle from another one, half a turn at most."""
+    def azimuth_from(self, azimuth: float) -> float:
+        """Azimuth of its middle relative to another one, half a turn at most."""
         return float(np.angle(np.exp(1j * (self.azimuth - azimuth))))
 
     def rectangle(self, azimuth: float) -> Float[np.ndarray, "4"]:
         """Its extent in azimuths and elevations, azimuths counted from another one."""
-        middle = self.beside(azimuth)
+        middle = self.azimuth_from(azimuth)
         return np.array([middle - self.half_width, self.low, middle + self.half_width, self.high])
 
 
@@ -148,7 +148,7 @@ class SphereView:
 
     def shown(self, thing: SphereBox) -> LabelledBox | None:
         """A thing's box in the view; None where too little of it is there."""
-        k, off = self.intrinsics, thing.beside(self.azimuth)
+        k, off = self.intrinsics, thing.azimuth_from(self.azimuth)
         if thing.half_width > np.deg2rad(SETTINGS.widest_deg) / 2:
             return None
         aside = np.deg2rad(SETTINGS.aside_deg)
@@ -165,7 +165,7 @@ class SphereView:
             return None
         return replace(thing.labelled, box=(float(x1), y1, float(x2), y2))
 
-    def on_sphere(self, labelled: LabelledBox) -> SphereBox:
+    def to_sphere(self, labelled: LabelledBox) -> SphereBox:
         """A box of the view as a thing."""
         k, (x1, y1, x2, y2) = self.intrinsics, labelled.box
         left, right = (float(np.arctan((k.cx - x) / k.fx)) for x in (x1, x2))
@@ -205,8 +205,8 @@ def found_in_views(boxes_by_view: Sequence[tuple[SphereView, Sequence[LabelledBo
         for labelled in boxes:
             x1, _, x2, _ = labelled.box
             cut = min(x1, view.intrinsics.width - x2) < SETTINGS.seam * view.intrinsics.width
-            thing = view.on_sphere(labelled)
-            rows.append((cut, -labelled.score * np.cos(thing.beside(view.azimuth)), thing))
+            thing = view.to_sphere(labelled)
+            rows.append((cut, -labelled.score * np.cos(thing.azimuth_from(view.azimuth)), thing))
     distinct: list[SphereBox] = []
     for _, _, thing in sorted(rows, key=lambda row: row[:2]):
         if not any(_is_same(thing, other) for other in distinct):
@@ -244,7 +244,7 @@ def marked_views(
                 boxes.append(box)
         posed.append(PosedInputs(Inputs(photo, tuple(boxes), intrinsics=view.intrinsics), view.camera(height_m)))
     ordered = (
-        tuple(sorted(seen, key=lambda s: abs(thing.beside(photos[s[0]][0].azimuth))))
+        tuple(sorted(seen, key=lambda s: abs(thing.azimuth_from(photos[s[0]][0].azimuth))))
         for thing, seen in zip(things, sightings, strict=True)
     )
     return tuple(posed), tuple(ordered)

@@ -52,10 +52,10 @@ class EmbeddedMasks:
         results: Outlined = []
         for done, box in enumerate(boxes):
             progress.report(done / len(boxes), f"Outlining objects ({done + 1} of {len(boxes)})")
-            results.append(self.inside_box(rgb, box.box))
+            results.append(self.segment_box(rgb, box.box))
         return results
 
-    def inside_box(self, rgb: UInt8[np.ndarray, "h w 3"], box: Box) -> tuple[Bool[np.ndarray, "h w"], float]:
+    def segment_box(self, rgb: UInt8[np.ndarray, "h w 3"], box: Box) -> tuple[Bool[np.ndarray, "h w"], float]:
         """The object inside a box, and how sure its outline is (0 to 1).
 
         Where nothing can be told apart, the mask is the box and the confidence low.

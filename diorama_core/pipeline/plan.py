@@ -252,7 +252,7 @@ PLAN: tuple[Step, ...] = (
     Derivation(with_network_inputs, ("given", "detected_boxes", "predicted_depth"), "inputs"),
     StageStep("camera", "estimate", ("inputs",), "camera", 0.05),
     # Outlines do not depend on the camera: correcting its field of view must not look for them again.
-    Derivation(lambda inputs: inputs.of_any_camera, ("inputs",), "camera_free_inputs"),
+    Derivation(lambda inputs: inputs.without_camera, ("inputs",), "camera_free_inputs"),
     StageStep("objects", "segment", ("camera_free_inputs",), "outlined_objects", 0.15),
     StageStep("naming", "name", ("photo", "outlined_objects"), "seen_kinds", 0.01, dispensable=True),
     Derivation(with_seen_kinds, ("outlined_objects", "seen_kinds"), "seen_objects"),

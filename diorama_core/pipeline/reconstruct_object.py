@@ -60,7 +60,7 @@ class _Similarity:
     scale: float
 
     @classmethod
-    def between(cls, measured: Camera, scene: Camera, floor_m: float) -> _Similarity:
+    def from_cameras(cls, measured: Camera, scene: Camera, floor_m: float) -> _Similarity:
         """Both cameras are the photo's; their heights above the floor say how lengths compare.
 
         Args:
@@ -202,7 +202,7 @@ def _found(
     geometry: ObjectGeometry = photo["geometry"]
     floor = scene.architecture.floor
     level = 0.0 if floor is None else float(floor.polygon[:, 2].mean())
-    to_scene = _Similarity.between(geometry.camera, scene.camera, level)
+    to_scene = _Similarity.from_cameras(geometry.camera, scene.camera, level)
     here = tuple(replace(c, pose=to_scene.pose(c.pose)) for c in posed.candidates)
     alone = {
         **{name: photo[name] for name in ("inputs", "objects", "architecture", "geometry")},

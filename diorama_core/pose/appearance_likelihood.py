@@ -72,13 +72,14 @@ class AppearanceLikelihood:
         """
         hits = appearance.caster.cast(self.seen.origin_world, self.seen.directions_world, poses)
         return -self._weight * (
-            self._of_place(hits, exact) + self.settings.colour_share * self._of_colours(appearance, hits, exact)
+            self._place_mismatch(hits, exact)
+            + self.settings.colour_share * self._colour_mismatch(appearance, hits, exact)
         )
 
     def misfit(self, appearance: ShapeAppearance, pose: PoseBatch) -> float:
         """How unlikely one pose is by its outline and depth: high where the shape or its size are wrong."""
         hits = appearance.caster.cast(self.seen.origin_world, self.seen.directions_world, pose)
-        return self._weight * float(self._of_place(hits, True)[0])
+        return self._weight * float(self._place_mismatch(hits, True)[0])
 
     @property
     def _weight(self) -> float:
@@ -97,8 +98,8 @@ class AppearanceLikelihood:
         """Cells whose colour is the object's alone."""
         return self.seen.covered * self.seen.weight > INNER_CELL
 
-    def _of_place(self, hits: ShapeHits, exact: bool) -> Float[np.ndarray, "p"]:
-        """How many cells disagree: covered where the mask is not, or the other way round, or at another depth."""
+    def _place_mismatch(self, hits: ShapeHits, exact: bool) -> Float[np.ndarray, "p"]:
+        """Number of cells that disagree: covered where the mask is not, or the other way round, or at another depth."""
         s, covered = self.surface, self.seen.covered
         weight = np.where(s.known & (s.weight == 0), 1.0, self.seen.weight)
         weight = np.where(s.hides(hits), 0.0, weight)
@@ -111,14 +112,14 @@ class AppearanceLikelihood:
         inside = np.where(hits.covered, _softly(off / (self.settings.half_depth * s.tolerance_m), 4), 0.0)
         return missed.sum(axis=1) + inside @ (s.weight * np.clip(2 * covered - 1, 0.0, 1.0))
 
-    def _of_colours(self, appearance: ShapeAppearance, hits: ShapeHits, exact: bool) -> Float[np.ndarray, "p"]:
-        """How many cells have another colour than the light explains; 0 for shapes of one colour."""
+    def _colour_mismatch(self, appearance: ShapeAppearance, hits: ShapeHits, exact: bool) -> Float[np.ndarray, "p"]:
+        """Number of cells of another colour than the light explains; 0 for shapes of one colour."""
         light, variance = _light_of(appearance, self.settings)
         indices = np.flatnonzero(self._own)
         if not len(light) or not len(indices) or (light.std(axis=0) < self.settings.one_colour).all():
             return np.zeros(len(hits.poses))
         if appearance.opaque_caster is appearance.caster:
-            hits = hits.of_rays(indices)
+            hits = hits.select_rays(indices)
         else:
             hits = appearance.opaque_caster.cast(
                 self.seen.origin_world, self.seen.directions_world[indices], hits.poses

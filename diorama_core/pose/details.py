@@ -55,9 +55,9 @@ class InnerEdges:
 
     def agreement(self, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """Correlation, -1 to 1, with the edges of a shape under every pose; 0 where either has none."""
-        return np.array([self._of_pose(hits, k) for k in range(len(hits.poses))])
+        return np.array([self._pose_score(hits, k) for k in range(len(hits.poses))])
 
-    def _of_pose(self, hits: ShapeHits, pose: int) -> float:
+    def _pose_score(self, hits: ShapeHits, pose: int) -> float:
         covered = hits.covered[pose]
         if not self.inside.any() or not covered.any():
             return 0.0

@@ -91,7 +91,7 @@ class MadeToMeasure:
         longest_first = sorted(_sets(posed), key=lambda members: -_variants(members))  # no thread waits for a last one
         shown = [{m.object_id: seen[m.object_id] for m in members if m.object_id in seen} for members in longest_first]
         tasks = list(zip(longest_first, shown, strict=True))
-        made = map_beside(self._of_set, tasks, progress, "Making shapes to measure")
+        made = map_beside(self._fit_set, tasks, progress, "Making shapes to measure")
         fitted_by_id = {object_id: candidate for of_set in made for object_id, candidate in of_set.items()}
         return tuple(_with_first(p, fitted_by_id[p.object_id]) if p.object_id in fitted_by_id else p for p in posed)
 
@@ -115,7 +115,7 @@ class MadeToMeasure:
         chosen = {one.object_id: one for one in map_beside(choice.best_first, tasks)}
         return tuple(chosen.get(one.object_id, one) for one in posed)
 
-    def _of_set(self, members: Sequence[PosedCandidates], shown: Mapping[str, SeenObject]) -> dict[str, Candidate]:
+    def _fit_set(self, members: Sequence[PosedCandidates], shown: Mapping[str, SeenObject]) -> dict[str, Candidate]:
         """The first candidates of objects of one shape and size; none where none of them is seen well enough."""
         if not shown:
             return {}

@@ -91,7 +91,7 @@ class Evidence:
     def _outline_with_depth(self, surface: ObjectSurface, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """Intersection over union with the mask where nothing that was measured is in front of the shape."""
         k = self.camera.intrinsics
-        inside = self.seen.window.inside(k.width, k.height).astype(np.float64)
+        inside = self.seen.window.is_in_photo(k.width, k.height).astype(np.float64)
         before = np.where(surface.known, inside, self.seen.weight)
         weight = np.where(surface.hides(hits), 0.0, before)
         return soft_iou(self.seen.covered, hits.covered.astype(np.float64), weight)

@@ -227,8 +227,8 @@ class WallBounds:
         bounding = behind.mean(axis=1) < settings.seen_behind_share
         return cls(WallSamples(at[bounding], normals[bounding]), settings)
 
-    def through_m(self, poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, " p"]:
-        """How deep the lower corners of poses' boxes reach through the walls; 0 where they reach through none."""
+    def penetration_m(self, poses: PoseBatch, shape_size_m: Float[np.ndarray, "3"]) -> Float[np.ndarray, " p"]:
+        """Depth to which the lower corners of poses' boxes reach through walls; 0 where they reach through none."""
         at, normals = self.walls.points_xy, self.walls.normals_xy
         if len(at) == 0:
             return np.zeros(len(poses))
@@ -246,7 +246,7 @@ class WallBounds:
         return (
             -0.5
             * np.minimum(
-                self.through_m(poses, shape_size_m) / self.settings.wall_sigma_m, self.settings.max_wall_sigmas
+                self.penetration_m(poses, shape_size_m) / self.settings.wall_sigma_m, self.settings.max_wall_sigmas
             )
             ** 2
         )

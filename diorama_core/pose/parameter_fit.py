@@ -102,7 +102,7 @@ class ParameterFit:
         if not self._may_be_built(best.shape_id):
             return None
         retrieved = self._variant(best.shape_id)
-        as_is = self._fit(retrieved, size_m, self._at(retrieved, poses, best.pose.scale), best.pose.scale)
+        as_is = self._fit(retrieved, size_m, self._fit_at(retrieved, poses, best.pose.scale), best.pose.scale)
         size = np.round(size_m * as_is.poses[0].scale, 3)
         if not can_be_made(best.shape_id, size):
             return None
@@ -132,7 +132,7 @@ class ParameterFit:
         """
         changes: dict[str, Value] = {}
         best, left = (
-            self._at(self._variant(made_id(design_id, size_m, changes)), poses, start),
+            self._fit_at(self._variant(made_id(design_id, size_m, changes)), poses, start),
             self.settings.shapes.max_variants,
         )
         parameters, unchanged = tuple(varied(design_id)), 0
@@ -150,7 +150,7 @@ class ParameterFit:
             least = enough - (
                 self.settings.shapes.promising_with_depth if self._with_depth else self.settings.shapes.promising
             )
-            roughly = {v: self._at(variant, best.poses, start, least) for v, variant in variants.items()}
+            roughly = {v: self._fit_at(variant, best.poses, start, least) for v, variant in variants.items()}
             promising = [v for v in others if roughly[v].score > least]
             tried = {v: self._fit(variants[v], size_m, roughly[v], start, enough) for v in promising}
             value = max(tried, key=lambda v: tried[v].score, default=None)
@@ -178,7 +178,7 @@ class ParameterFit:
     def _variant(self, shape_id: str) -> _Variant:
         return _Variant(shape_id, self.library, self.settings)
 
-    def _at(
+    def _fit_at(
         self, variant: _Variant, poses: Sequence[Pose], start: Float[np.ndarray, "3"], least: float = -np.inf
     ) -> _Fit:
         """The variant in these poses; one that does not score `least` anyway is not searched for its levels."""
@@ -206,7 +206,7 @@ class ParameterFit:
                 for o, p in zip(self.seen, fit.poses, strict=True)
             ]
             if any(pose is not before for pose, before in zip(poses, fit.poses, strict=True)):
-                fit = self._at(variant, poses, start)
+                fit = self._fit_at(variant, poses, start)
             if fit.score < enough - self.settings.shapes.finely:
                 break
         return fit

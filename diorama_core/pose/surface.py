@@ -58,7 +58,7 @@ class ObjectSurface:
         off = (np.where(covered, depth, 0.0) - self.depth_m[is_informative]) / self.tolerance_m[is_informative]
         score = np.where(covered, np.exp(-(off**2)), 0.0)
         if self.normals_share >= self.settings.min_normals_share:
-            aligned = hits.of_rays(is_informative).normals_along(self.normals_world[is_informative])
+            aligned = hits.select_rays(is_informative).normals_along(self.normals_world[is_informative])
             score = (1 - self.normals_share) * score + self.normals_share * np.clip(aligned, 0.0, 1.0)
         return (score @ weight) / max(float(weight.sum()), 1e-9)
 

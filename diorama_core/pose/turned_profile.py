@@ -74,8 +74,8 @@ class OutlineMap:
     seen: Observed
     settings: ShapeFitSettings
 
-    def at(self, points_world: Float[np.ndarray, "*n 3"]) -> tuple[Bool[np.ndarray, "*n"], Bool[np.ndarray, "*n"]]:
-        """Whether points lie within the outline, and whether that is known at all."""
+    def sample(self, points_world: Float[np.ndarray, "*n 3"]) -> tuple[Bool[np.ndarray, "*n"], Bool[np.ndarray, "*n"]]:
+        """Look up which points lie within the outline, and of which that is known at all."""
         flat = points_world.reshape(-1, 3)
         pixels, in_front = self.camera.project(flat), self.camera.to_camera(flat)[:, 2] > NEAR_M
         x1, y1, x2, y2 = self.seen.window.bounds_px
@@ -107,7 +107,7 @@ def measured_girth(
     points = np.empty((KNOTS, len(tried), len(ANGLES), 3))
     points[..., :2] = pose.position[:2] + tried[None, :, None, None] * circle
     points[..., 2] = (pose.position[2] + pose.scale[2] * heights)[:, None, None]
-    inside, known = outline.at(points)
+    inside, known = outline.sample(points)
     fits = (known & ~inside).mean(axis=2) <= settings.max_outside
     widest = np.where(fits.all(axis=1), len(tried), np.argmin(fits, axis=1))
     limited = widest < len(tried)

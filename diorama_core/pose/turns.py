@@ -96,9 +96,9 @@ class TurnSearch:
         rivals = self._away_rad(tried, chosen) > min(_RIVAL_RAD, 0.8 * np.pi / self.fold)
         doubt = min(float(np.exp(scores[rivals].max() - scores[chosen])), 1.0) if rivals.any() else 0.0
         best = tried[chosen : chosen + 1]
-        return (self._in_the_middle(best) if self.believed > self.settings.well_believed else best), doubt
+        return (self._central_heading(best) if self.believed > self.settings.well_believed else best), doubt
 
-    def _in_the_middle(self, best: PoseBatch) -> PoseBatch:
+    def _central_heading(self, best: PoseBatch) -> PoseBatch:
         """The heading with most likelihood near it: a handle that is out of sight may be anywhere behind its mug."""
         turns = _NEARBY_RAD[np.abs(_NEARBY_RAD) <= np.pi / self.fold]
         turned = self._turned(best, turns)

@@ -71,13 +71,13 @@ class ImageSearch:
         if text.strip():
             worded = find(self.library, text, _WORDS_FIRST)
             if worded.shapes:
-                return self._among(worded, crop, k, progress)
+                return self._rerank(worded, crop, k, progress)
             matches = self._all(crop, k, progress)
             return FoundShapes(matches.shapes, matches.scores, worded.query, worded.note)
         return self._all(crop, k, progress)
 
-    def _among(self, worded: FoundShapes, crop: ShapeCrop, k: int, progress: Progress) -> FoundShapes:
-        """What words found, ordered by words and picture alike."""
+    def _rerank(self, worded: FoundShapes, crop: ShapeCrop, k: int, progress: Progress) -> FoundShapes:
+        """Order what words found by words and picture alike."""
         matrix = self.prepared(worded.shapes, progress)
         alike = matrix.scores(_query(crop))
         scores = []

@@ -81,8 +81,8 @@ class ObjectCrop(ArrayValue):
 class AppearanceSimilarity(Protocol):
     """Compares objects with shapes."""
 
-    def of(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
-        """0 (unlike) to 1, comparable among these shapes."""
+    def similarities(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
+        """Similarities, 0 (unlike) to 1, comparable among these shapes."""
         ...
 
 
@@ -95,7 +95,7 @@ class EmbeddedSimilarity:
     """Cache folder of view features; `features` in Diorama's cache folder by default."""
     settings: SimilaritySettings = SETTINGS.similarity
 
-    def of(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
+    def similarities(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
         """The weight of the views relative to the main colours grows with visibility."""
         appearances = [self._appearance(s) for s in shapes]
         seen = palette_of_crop(item.rgb, item.mask)

@@ -107,13 +107,13 @@ class HierarchicalRetrieval:
             colours = None if item.category in NEVER_OPEN else SeeThrough.of(inputs.photo.rgb, seen)
             observed = _Observation(cuboids[item.id], seen, whole_outline(seen), visible, named[index], colours)
             object_crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, visible, seen.mask_trust)
-            alike = similarity.of(object_crop, [m.shape for m in members])
+            alike = similarity.similarities(object_crop, [m.shape for m in members])
             words, word_note = words_factor(
                 self.library, item.label, item.category, [m.shape for m in members], ranking
             )
             described = (word_note == 1) & (word_note < 1).any()
             factors = [
-                m.kind_factor * float(w) * self._of_form(m.shape, item, described=d)
+                m.kind_factor * float(w) * self._form_factor(m.shape, item, described=d)
                 for m, w, d in zip(members, words, described.tolist(), strict=True)
             ]
             sight.append(visible)
@@ -192,8 +192,8 @@ class HierarchicalRetrieval:
         folder = default_cache_dir() / "appearances"
         return SHARED_APPEARANCES.get(shape.content_hash, folder, lambda: self.library.parts(shape.id))
 
-    def _of_form(self, shape: Shape, item: DetectedObject, *, described: bool) -> float:
-        """How well the shape's form agrees with what was seen; how usual it is, where the mask can hardly tell.
+    def _form_factor(self, shape: Shape, item: DetectedObject, *, described: bool) -> float:
+        """Agreement of the shape's form with what was seen; how usual it is, where the mask can hardly tell.
 
         What the label describes is as usual as can be.
         """

@@ -121,8 +121,8 @@ class JointSimilarity:
     spread: float = 0.08
     """Cosine by which a shape falls short of its pool's best at which it counts a third as much."""
 
-    def of(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
-        """Near 1 for what is most alike; falls with the cosine."""
+    def similarities(self, item: ObjectCrop, shapes: Sequence[Shape]) -> Float[np.ndarray, " n"]:
+        """Similarities, near 1 for what is most alike; they fall with the cosine."""
         if not shapes:
             return np.zeros(0)
         known = shape_vectors(self.library, self.embedding, shapes, self.folder)

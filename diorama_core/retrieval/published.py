@@ -107,14 +107,14 @@ class MatchedByLooks:
             if item.id not in placed:
                 continue
             progress.report(index / len(objects), f"Looking for shapes: {item.label}")
-            shapes = self._of_kind(item.category)
+            shapes = self._kind_shapes(item.category)
             crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, 1.0, 1.0)
-            alike = similarity.of(crop, shapes)
+            alike = similarity.similarities(crop, shapes)
             order = sorted(range(len(shapes)), key=lambda k: (-alike[k], shapes[k].id))[: self.shapes]
             rankings.append(RankedShapes(item.id, tuple((shapes[k].id, float(alike[k])) for k in order)))
         return tuple(rankings)
 
-    def _of_kind(self, name: str) -> list[Shape]:
+    def _kind_shapes(self, name: str) -> list[Shape]:
         """Shapes of the category; of its nearest kinds where the library has none of itself."""
         shapes = list(self.library.in_category(name))
         return shapes or [s for kind in near_kinds(name)[: self.kinds] for s in self.library.in_category(kind)]

@@ -439,7 +439,7 @@ class Scene:
         object.__setattr__(self, "supports", tuple(ordered))
 
     @cached_property
-    def _by_id(self) -> dict[str, SceneObject]:
+    def _objects_by_id(self) -> dict[str, SceneObject]:
         return {o.id: o for o in self.objects}
 
     @cached_property
@@ -448,11 +448,11 @@ class Scene:
 
     def object(self, object_id: str) -> SceneObject:
         """The object with this id; raises `KeyError` when there is none."""
-        return self._by_id[object_id]
+        return self._objects_by_id[object_id]
 
     def has_object(self, object_id: str) -> bool:
         """Whether an object with this id exists."""
-        return object_id in self._by_id
+        return object_id in self._objects_by_id
 
     def plane(self, plane_id: str) -> Plane:
         """The plane with this id; raises `KeyError` when there is none."""

@@ -143,7 +143,7 @@ class Furnisher:
             return None
         parent, base = self._ground(quad)
         pose = self._upright(item, xy, base, yaw_rad)
-        if not self._under_roof(item, pose) or self.bodies.hit_by(item, pose, ignore={parent}):
+        if not self._fits_under_roof(item, pose) or self.bodies.hit_by(item, pose, ignore={parent}):
             return None
         placed = self._put(
             item, pose, Support("", parent, "placed on", 0 if parent != "floor" else None, "bottom", adheres_to)
@@ -234,7 +234,7 @@ class Furnisher:
         xy = wall.point(t_m, item.size_m[0] / 2)
         pose = Pose.upright([*xy, centre_z_m], wall.yaw_rad, item.scale)
         outward = np.array([*wall.inward, 0.0]) * 1e-3
-        if not self._under_roof(item, pose) or self.bodies.hit_by(item, pose, lift=outward):
+        if not self._fits_under_roof(item, pose) or self.bodies.hit_by(item, pose, lift=outward):
             return None
         self._hung.setdefault(wall.id, []).append(rectangle)
         return self._put(item, pose, Support("", wall.id, "mounted on", None, "back"))
@@ -289,7 +289,7 @@ class Furnisher:
             return None
         centre = parent.pose.R_world_object @ local + parent.pose.position
         pose = Pose.upright(centre, parent.pose.yaw_rad + turn_rad, item.scale)
-        if not self._under_roof(item, pose):
+        if not self._fits_under_roof(item, pose):
             return None
         if not self.plan.contains(footprint(item.size_m, centre[:2], pose.yaw_rad)) or self.bodies.hit_by(item, pose):
             return None
@@ -327,10 +327,10 @@ class Furnisher:
     def _upright(self, item: Item, xy: Float[np.ndarray, "2"], base_m: float, yaw_rad: float) -> Pose:
         return Pose.upright([xy[0], xy[1], base_m + item.size_m[2] / 2], yaw_rad, item.scale)
 
-    def _under_roof(self, item: Item, pose: Pose) -> bool:
+    def _fits_under_roof(self, item: Item, pose: Pose) -> bool:
         half = item.size_m / 2
         signs = np.array([[(k >> axis & 1) * 2.0 - 1.0 for axis in range(3)] for k in range(8)])
-        return self.plan.under_roof((signs * half) @ pose.R_world_object.T + pose.position)
+        return self.plan.fits_under_roof((signs * half) @ pose.R_world_object.T + pose.position)
 
     def _front(self, item: Item, xy: np.ndarray, yaw_rad: float, free_m: float) -> Float[np.ndarray, "4 2"]:
         ahead = np.array([np.cos(yaw_rad), np.sin(yaw_rad)]) * (item.size_m[0] + free_m) / 2

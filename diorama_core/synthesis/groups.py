@@ -42,7 +42,7 @@ def wall_at_back(f: Furnisher, object_id: str) -> tuple[WallLine, float] | None:
     if not edge.adheres_to:
         return None
     wall = f.plan.wall(edge.adheres_to[0])
-    return wall, float((f.object(object_id).pose.position[:2] - wall.start) @ wall.along)
+    return wall, float((f.object(object_id).pose.position[:2] - wall.start) @ wall.direction)
 
 
 def picture_above(f: Furnisher, object_id: str, *categories: str, gap_m: float = 0.22) -> str | None:
@@ -85,7 +85,7 @@ def _hidden(f: Furnisher, wall: WallLine, t: float, item: Item, centre_z: float)
     for other in f.objects:
         top = float(other.pose.position[2] + other.size_m[2] / 2)
         off = (other.pose.position[:2] - wall.start) @ wall.inward
-        along = (other.pose.position[:2] - wall.start) @ wall.along
+        along = (other.pose.position[:2] - wall.start) @ wall.direction
         reach = (other.size_m[:2].max() + item.size_m[1]) / 2
         if top > centre_z - item.size_m[2] / 2 and off < 0.8 and abs(along - t) < reach and other.category != "window":
             return True
@@ -186,7 +186,7 @@ def _screen_opposite(f: Furnisher, sofa: str) -> str | None:
     if item is None:
         return None
     for wall in opposite:
-        t = float((body.pose.position[:2] - wall.start) @ wall.along)
+        t = float((body.pose.position[:2] - wall.start) @ wall.direction)
         for shift in (0.0, 0.35, -0.35, 0.8, -0.8):
             at = t + shift
             if not item.size_m[1] / 2 + 0.02 < at < wall.length_m - item.size_m[1] / 2 - 0.02:

@@ -82,8 +82,8 @@ class RoomPlan(ArrayValue):
         rise = (self.height_m - self.slope.low_m) / self.slope.run_m
         return np.minimum(level, self.slope.low_m + rise * off)
 
-    def under_roof(self, corners_m: Float[np.ndarray, "n 3"], gap_m: float = 0.02) -> bool:
-        """Whether a convex body with these corners leaves a gap below the ceiling."""
+    def fits_under_roof(self, corners_m: Float[np.ndarray, "n 3"], gap_m: float = 0.02) -> bool:
+        """True if a convex body with these corners leaves a gap below the ceiling."""
         return bool((corners_m[:, 2] <= self.roof_m(corners_m[:, :2]) - gap_m).all())
 
     def architecture(self, textures: tuple[str | None, str | None, str | None] = (None, None, None)) -> Architecture:

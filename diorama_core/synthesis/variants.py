@@ -157,7 +157,7 @@ class VariantMaker:
                 continue
             on_floor = scene.has_plane(edge.parent)
             moved_ids = (item.id, *descendants(scene, item.id))
-            before = self.collisions.of(scene, moved_ids)
+            before = self.collisions.pairs(scene, moved_ids)
             for _ in range(self.settings.tries):
                 shift = rng.normal(0.0, self.settings.shift_m / (1 if on_floor else 3), 2)
                 R = rotation_from_vector(np.array([0.0, 0.0, rng.normal(0.0, self.settings.turn_rad)]))
@@ -166,7 +166,7 @@ class VariantMaker:
                 if not on_floor:
                     trial = seated(trial, self.library, item.id)
                 outside = on_floor and not lie_within(footprint_of(trial.object(item.id))[None], frame.outline, 0.0)[0]
-                if not outside and self.collisions.of(trial, moved_ids) <= before:
+                if not outside and self.collisions.pairs(trial, moved_ids) <= before:
                     scene = trial
                     break
         return scene
@@ -194,7 +194,7 @@ class VariantMaker:
                 item = SceneObject(name, shape.category, shape.category, shape.id, shape.size_m, pose)
                 inside = lie_within(footprint_of(item)[None], place.surface.polygon[:, :2], 0.0)[0]
                 trial = edits.insert(scene, item, place.edge(name)) if inside else scene
-                if inside and not self.collisions.of(trial, [name]):
+                if inside and not self.collisions.pairs(trial, [name]):
                     scene = trial
                     break
         return scene

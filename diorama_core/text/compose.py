@@ -155,7 +155,7 @@ class _Composer:
             relations = self._resolved(k, request, copy, object_id)
             usual = usual_relations(self.scene, request, copy)
             usual += self._face_to_face(request, copy, placed, object_id)
-            usual = seated(self.scene, usual, request, copy) + self._at_sides(request, wanted)
+            usual = seated(self.scene, usual, request, copy) + self._side_relations(request, wanted)
             usual += [Relation("in middle")] if is_sat_around(request, wanted) else []
             central = stands_between(request, wanted) or is_sat_around(request, wanted)
             middle = np.array([*RoomFrame.of(self.scene).middle, 0.0]) if central else None
@@ -225,8 +225,8 @@ class _Composer:
                 self.relations[placed[0]].append(relation)
         return []
 
-    def _at_sides(self, request: RequestedObject, wanted: Sequence[RequestedObject]) -> list[Relation]:
-        """Beds stand on either side of what is wished between them, which is there before."""
+    def _side_relations(self, request: RequestedObject, wanted: Sequence[RequestedObject]) -> list[Relation]:
+        """Relations of beds, which stand on either side of what is wished between them and was placed before."""
         return [
             Relation("beside", (self.ids[k][0],))
             for k, other in enumerate(wanted)

@@ -103,7 +103,7 @@ def _as_far_as_free(
     moved_ids = [d for i in ids for d in (i, *descendants(scene, i))]
     for share in SHARES:
         after, notes = whole if share == 1.0 else _shifted_by(scene, ids, edit, toward, share)
-        if not positioner.collisions.of(after, moved_ids) and all(positioner.inside(after, i) for i in ids):
+        if not positioner.collisions.pairs(after, moved_ids) and all(positioner.is_inside(after, i) for i in ids):
             short = [] if share == 1.0 else [f"{names_of(scene, ids)}: only {share:.0%} of the way is free"]
             return after, [*notes, *short]
     return whole
@@ -208,7 +208,7 @@ def freed(positioner: Positioner, scene: Scene, object_id: str) -> tuple[Scene, 
     """An object that turned or grew into another steps aside, with the same heading."""
     after, item = scene, scene.object(object_id)
     moved_ids = [object_id, *descendants(scene, object_id)]
-    if not positioner.collisions.of(scene, moved_ids) and positioner.inside(scene, object_id):
+    if not positioner.collisions.pairs(scene, moved_ids) and positioner.is_inside(scene, object_id):
         return after, []
     spot = positioner.nearby(scene, object_id)
     if spot is None:

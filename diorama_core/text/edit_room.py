@@ -199,7 +199,7 @@ def _axes(scene: Scene) -> tuple[Float[np.ndarray, "2 2"], Float[np.ndarray, "2"
     feet = wall_feet(scene)
     if not feet:
         raise EditRefused("this scene has no walls")
-    along = max(feet, key=lambda f: f.length_m).along
+    along = max(feet, key=lambda f: f.length_m).direction
     axes = np.array([along, [-along[1], along[0]]])
     ends = np.array([p for f in feet for p in (f.start, f.end)])
     return axes, np.ptp(ends @ axes.T, axis=0)

@@ -61,9 +61,9 @@ def placed(positioner: Positioner, scene: Scene, object_id: str, edit: SetPlace)
         pose = replace(pose, position=np.array(edit.base_m) + pose.R_world_object[:, 2] * size[2] / 2)
     after = edits.move(after, object_id, pose)
     moved_ids = [object_id, *descendants(after, object_id)]
-    met = {b if a in moved_ids else a for a, b in positioner.collisions.of(after, moved_ids)} - set(moved_ids)
+    met = {b if a in moved_ids else a for a, b in positioner.collisions.pairs(after, moved_ids)} - set(moved_ids)
     notes = [f"{item.label} meets {names_of(after, sorted(met))}"] if met else []
-    if not positioner.inside(after, object_id):
+    if not positioner.is_inside(after, object_id):
         notes.append(f"{item.label} is not wholly inside the room")
     x, y, z = after.object(object_id).pose.position - pose.R_world_object[:, 2] * size[2] / 2
     sentence = f"place {item.label} at ({x:.2f}, {y:.2f}, {z:.2f}) m, heading {np.degrees(pose.yaw_rad):.0f} degrees"

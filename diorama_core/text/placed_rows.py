@@ -82,7 +82,7 @@ def placed_rows(
             member = replace(one, id=ids[-1], label=f"{shape.category} {number}", category=shape.category, pose=pose)
             support = None if spot.support is None else replace(spot.support, child=member.id)
             filled = edits.insert(filled, member, support)
-        free = not positioner.collisions.of(filled, ids) and all(positioner.inside(filled, i) for i in ids)
+        free = not positioner.collisions.pairs(filled, ids) and all(positioner.is_inside(filled, i) for i in ids)
         if free:
             return PlacedRows(
                 filled, tuple(ids), replace(block, pose=replace(spot.pose, scale=block.pose.scale)), wishes

@@ -65,7 +65,7 @@ class Selector:
         if phrase.beyond and not any(set(phrase.beyond) <= set(o.label.lower().split()) for o in self.scene.objects):
             raise EditRefused(f"“{words.strip()}”: “{' '.join(phrase.beyond)}” is not understood")
         objects = self._named(phrase, words)
-        objects = self._in_place(objects, places, words)
+        objects = self._filtered(objects, places, words)
         if movable and not phrase.label:  # "everything" that is moved is what stands on the floor, with what it carries
             objects = [o for o in objects if self._stands_free(o)] or objects
         elif movable and not phrase.every:
@@ -140,7 +140,7 @@ class Selector:
                 raise EditRefused(f"no {kind} here is {word}; there are {len(objects)}: {_names(objects)}")
         return objects
 
-    def _in_place(self, objects: list[SceneObject], places: Sequence[PlacePhrase], words: str) -> list[SceneObject]:
+    def _filtered(self, objects: list[SceneObject], places: Sequence[PlacePhrase], words: str) -> list[SceneObject]:
         for place in places:
             targets = self.targets(place.words) if place.words else ()
             if place.kind == "on" and targets:

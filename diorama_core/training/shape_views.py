@@ -150,7 +150,7 @@ def crop_before(
     canvas = _part(background, rng)
     cut = _Cut.drawn(rng) if rng.random() < CUT else None
     if cut is not None:
-        rgba = cut.of(rgba)
+        rgba = cut.apply(rgba)
         height, width = rgba.shape[:2]
     scale = CROP_SIDE / (max(width, height) * (1 + 2 * MARGIN)) * float(np.exp(rng.normal(0.0, 0.05)))
     centre = CROP_SIDE / 2 + rng.normal(0.0, 0.02 * CROP_SIDE, 2)
@@ -175,8 +175,8 @@ class _Cut:
     def drawn(cls, rng: np.random.Generator) -> _Cut:
         return cls(int(rng.integers(3)), float(rng.uniform(0.05, MAX_CUT)))
 
-    def of(self, rgba: UInt8[np.ndarray, "h w 4"]) -> UInt8[np.ndarray, "h2 w2 4"]:
-        """What the border leaves."""
+    def apply(self, rgba: UInt8[np.ndarray, "h w 4"]) -> UInt8[np.ndarray, "h2 w2 4"]:
+        """Cut a picture to what the border leaves."""
         height, width = rgba.shape[:2]
         if self.side == 2:
             return rgba[: max(2, round(height * (1 - self.share)))]

@@ -114,7 +114,7 @@ def test_a_duvet_that_hangs_over_the_frame_is_no_colour_of_the_frame() -> None:
     rows = np.argwhere(view.slot == wood)
     over = rows[rows[:, 0] < np.quantile(rows[:, 0], 0.6)]
     hung = rgb.copy()
-    hung[over[:, 0] + view.top, over[:, 1] + view.left] = np.median(view.of(rgb)[view.slot == body], axis=0)
+    hung[over[:, 0] + view.top, over[:, 1] + view.left] = np.median(view.crop(rgb)[view.slot == body], axis=0)
     (_, frame) = slot_pixels(view, slots, hung, mask, mask, NOTHING)
     assert frame.slot.role == "wood"
     found = appearance_of(view, frame, hung, light)
@@ -125,14 +125,14 @@ def test_an_object_of_one_colour_keeps_it_on_all_its_slots() -> None:
     view, slots, rgb, mask, _ = seen()
     rgb[mask] = (200, 190, 180)
     (body, frame) = slot_pixels(view, slots, rgb, mask, mask, NOTHING)
-    np.testing.assert_allclose(*(np.median(view.of(rgb)[p.near], axis=0) for p in (body, frame)))
+    np.testing.assert_allclose(*(np.median(view.crop(rgb)[p.near], axis=0) for p in (body, frame)))
 
 
 def colours_of(rgb, view, slots, background=NOTHING):
     """Median colours by role of the slots that are read, from a picture of the view's size."""
     mask = view.slot >= 0
     found = slot_pixels(view, slots, rgb, mask, mask, background)
-    return {p.slot.role: np.median(view.of(rgb)[p.near], axis=0) for p in found}
+    return {p.slot.role: np.median(view.crop(rgb)[p.near], axis=0) for p in found}
 
 
 def index_of(slots, role: str) -> int:

@@ -45,4 +45,4 @@ def test_large_objects_are_looked_at_coarsely() -> None:
     view = surface_view(parts(), slots_of(parts()), Pose.upright((0.0, 0.0, 0.0)), camera, mask)
     assert view is not None
     assert view.step > 1
-    assert view.of(mask).shape == view.slot.shape
+    assert view.crop(mask).shape == view.slot.shape

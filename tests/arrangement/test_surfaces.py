@@ -41,7 +41,7 @@ scales = st.tuples(*[st.floats(0.3, 3.0)] * 3).map(np.array)
 @given(turn=vector, p=vector, scale=scales, point=vector)
 def test_a_surface_at_a_pose_holds_the_posed_points(turn, p, scale, point) -> None:
     pose = Pose(rotation_from_vector(turn), p, scale)
-    world = TOP.in_world(pose)
+    world = TOP.to_world(pose)
     np.testing.assert_allclose(world.polygon, pose.apply(SQUARE), atol=1e-9)
     np.testing.assert_allclose(world.polygon @ world.normal, world.level, atol=1e-9)
     np.testing.assert_allclose(np.linalg.norm(world.outward, axis=1), 1.0)
@@ -53,8 +53,8 @@ def test_a_surface_at_a_pose_holds_the_posed_points(turn, p, scale, point) -> No
 
 def test_planes_stay_where_they_are() -> None:
     floor = RestingSurface.of(SQUARE, UP, np.inf, of_plane=True)
-    assert floor.in_world(Pose.upright((1, 2, 3))) is floor
-    assert TOP.in_world(None) is TOP
+    assert floor.to_world(Pose.upright((1, 2, 3))) is floor
+    assert TOP.to_world(None) is TOP
 
 
 @given(points=st.lists(st.tuples(coordinate, coordinate), min_size=3, max_size=12, unique=True), normal=vector)
@@ -152,7 +152,7 @@ def test_what_is_mounted_on_an_object_goes_to_its_nearest_side(room: Room) -> No
     clock = item_at((0, item.size_m[0] / 2 + 0.1, 1.2))
     surface = choose_surface(room.scene(), clock, Support("item", wardrobe, "mounted on"), shape)
     np.testing.assert_allclose(surface.normal, [1.0, 0.0, 0.0])
-    np.testing.assert_allclose(surface.in_world(item.pose).normal, [0.0, 1.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(surface.to_world(item.pose).normal, [0.0, 1.0, 0.0], atol=1e-12)
 
 
 def contact(scene: Scene, item: SceneObject, edge: Support | None, surface: RestingSurface | None) -> list[float]:

@@ -178,7 +178,7 @@ def test_a_door_and_a_window_are_put_into_a_wall(
         assert new.category == category
         assert session.scene.support_of(new.id).parent == wall
         at = foot(editor, wall)
-        assert float((new.pose.position[:2] - at.start) @ at.along) == pytest.approx(share * at.length_m, abs=0.45)
+        assert float((new.pose.position[:2] - at.start) @ at.direction) == pytest.approx(share * at.length_m, abs=0.45)
     expect(editor.page.locator("#dio-plan .piece.opening")).to_have_count(2)
 
 

@@ -177,4 +177,4 @@ def test_what_is_added_from_the_photo_stands_where_it_stands_there(editor: Edito
     assert edge is not None
     assert new.corners_world[:, 2].min() == pytest.approx(0.74, abs=0.01)
     assert edge.parent == "table_1"
-    assert not Collisions(session.library).of(session.scene, [new.id])
+    assert not Collisions(session.library).pairs(session.scene, [new.id])

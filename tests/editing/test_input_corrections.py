@@ -144,7 +144,7 @@ def test_inputs_about_whose_camera_nothing_was_said_are_the_bytes_they_were(inpu
     assert b"camera_height" not in codec.dump(inputs)
     said = replace(inputs, camera_attitude=CameraAttitude(0.1, 0.0), camera_height_m=1.5)
     assert codec.load(codec.dump(said)) == said
-    assert said.of_any_camera == inputs
+    assert said.without_camera == inputs
 
 
 def test_the_same_object_is_the_one_that_overlaps_most() -> None:

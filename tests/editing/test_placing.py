@@ -88,9 +88,9 @@ def test_sliding_stops_at_the_table_and_snapping_keeps_to_the_grid() -> None:
     chair = scene.object("chair_2")
     into = np.array([0.5, 2.2, chair.pose.position[2]])
     through = under_hand(scene, "chair_2", chair.pose.position, into)
-    assert Collisions(LIBRARY).of(through, ["chair_2"])
+    assert Collisions(LIBRARY).pairs(through, ["chair_2"])
     slid = under_hand(scene, "chair_2", chair.pose.position, into, slide=True)
-    assert not Collisions(LIBRARY).of(slid, ["chair_2"])
+    assert not Collisions(LIBRARY).pairs(slid, ["chair_2"])
     snapped = under_hand(scene, "chair_2", chair.pose.position, np.array([1.013, 0.484, 0.4]), snap=True)
     x, y = snapped.object("chair_2").pose.position[:2] / GRID_M
     assert (x - round(x), y - round(y)) == pytest.approx((0.0, 0.0), abs=1e-6)

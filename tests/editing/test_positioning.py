@@ -25,8 +25,8 @@ def test_the_best_place_is_free_and_repeatable() -> None:
     assert spot.pose == again.pose
     after = positioner.put(scene, item, spot)
     assert is_met(after, "new", wish, RoomFrame.of(after))
-    assert not positioner.collisions.of(after, ["new"])
-    assert positioner.inside(after, "new")
+    assert not positioner.collisions.pairs(after, ["new"])
+    assert positioner.is_inside(after, "new")
     aside = positioner.nearby(after, "new")
     assert aside is not None
     assert 0.0 < aside.cost < 1.2

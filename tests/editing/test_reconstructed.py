@@ -47,7 +47,7 @@ def test_what_would_go_through_a_table_stands_on_it_as_the_photo_shows_it() -> N
     after = inserted(scene, Posed(lamp, Support("new", "floor")), PlainLibrary())
     new = after.objects[-1]
     assert after.support_of(new.id).parent == "table_1"
-    assert not Collisions(PlainLibrary()).of(after, [new.id])
+    assert not Collisions(PlainLibrary()).pairs(after, [new.id])
     assert new.corners_world[:, 2].min() == pytest.approx(0.74, abs=1e-6)
     np.testing.assert_allclose(new.pose.position[:2], (0.1, 2.2), atol=0.02)
     seen = [o.size_m[2] / camera.to_camera(o.pose.position[None])[0, 2] for o in (lamp, new)]
@@ -60,7 +60,7 @@ def test_what_cannot_stand_on_it_stands_beside_it() -> None:
     after = inserted(scene, Posed(_lamp(-0.9, 1.5, 0.5), Support("new", "floor")), PlainLibrary())
     new = after.objects[-1]
     assert after.support_of(new.id).parent == "floor"
-    assert not Collisions(PlainLibrary()).of(after, [new.id])
+    assert not Collisions(PlainLibrary()).pairs(after, [new.id])
 
 
 @pytest.mark.unchecked

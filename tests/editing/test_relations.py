@@ -45,7 +45,7 @@ def test_relations_cost_where_they_do_not_hold(kind: RelationKind, at: tuple[flo
 
 def test_relations_to_the_room() -> None:
     wall = FRAME.walls[0]
-    middle = wall.start + 0.5 * wall.length_m * wall.along + 0.3 * wall.inward
+    middle = wall.start + 0.5 * wall.length_m * wall.direction + 0.3 * wall.inward
     at_wall = item("desk", (0.6, 1.2, 0.75), *middle, wall.yaw_rad)
     corner = FRAME.corners[0] + 0.4 * (FRAME.middle - FRAME.corners[0]) / np.linalg.norm(
         FRAME.middle - FRAME.corners[0]

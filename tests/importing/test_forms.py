@@ -282,7 +282,7 @@ def test_files_that_say_their_unit_take_no_other(tmp_path: Path) -> None:
 
 def test_pictures_of_a_scan_keep_their_place_in_another_unit(tmp_path: Path) -> None:
     cloud = read_points(write_app_scan(tmp_path / "scan", "polycam"))
-    half = cloud.in_unit(0.5 * cloud.unit_m)
+    half = cloud.to_unit(0.5 * cloud.unit_m)
     np.testing.assert_allclose(half.points, 0.5 * cloud.points)
     for before, after in zip(cloud.photos, half.photos, strict=True):
         np.testing.assert_allclose(after.camera.position, 0.5 * before.camera.position)

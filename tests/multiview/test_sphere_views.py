@@ -27,10 +27,10 @@ def test_every_narrow_thing_is_whole_in_some_view_and_comes_back(
 ) -> None:
     thing = SphereBox(a, half, low, low + tall, CHAIR)
     shown = [(view, box) for view in VIEWS if (box := view.shown(thing)) is not None]
-    view, box = min(shown, key=lambda row: abs(thing.beside(row[0].azimuth)))
+    view, box = min(shown, key=lambda row: abs(thing.azimuth_from(row[0].azimuth)))
     assert 0 < box.box[0] < box.box[2] < view.intrinsics.width
-    back = view.on_sphere(box)
-    assert back.beside(a) == pytest.approx(0.0, abs=0.02)
+    back = view.to_sphere(box)
+    assert back.azimuth_from(a) == pytest.approx(0.0, abs=0.02)
     assert back.half_width == pytest.approx(half, abs=1e-6)
 
 
@@ -65,13 +65,13 @@ def test_views_are_marked_with_the_best_one_first_and_what_is_found_twice_is_one
     thing = SphereBox(0.5, 0.2, -0.4, 0.1, CHAIR)
     photos = [(v, Photo(np.zeros((v.intrinsics.height, v.intrinsics.width, 3), np.uint8), "p", SIZE)) for v in VIEWS]
     posed, seen = marked_views(photos, [thing], 1.4)
-    nearest = min(range(len(VIEWS)), key=lambda n: abs(thing.beside(VIEWS[n].azimuth)))
+    nearest = min(range(len(VIEWS)), key=lambda n: abs(thing.azimuth_from(VIEWS[n].azimuth)))
     assert seen[0][0] == (nearest, 0)
     assert len(seen[0]) >= 2
     assert all(p.camera.position[2] == 1.4 for p in posed)
     found = found_in_views([(v, p.inputs.boxes) for v, p in zip(VIEWS, posed, strict=True)])
     assert len(found) == 1
-    assert found[0].beside(0.5) == pytest.approx(0.0, abs=0.02)
+    assert found[0].azimuth_from(0.5) == pytest.approx(0.0, abs=0.02)
 
 
 def test_a_view_s_picture_has_its_camera_s_size() -> None:

@@ -35,7 +35,7 @@ def poses(x: float, degrees: float = 0.0, y: float = 0.0) -> PoseBatch:
 @given(st.floats(-0.5, 3.0))
 def test_what_reaches_through_a_wall_is_as_deep_as_its_farthest_corner(x: float) -> None:
     bounds = WallBounds.of(wall(), points(1.5))
-    assert bounds.through_m(poses(x), SIZE_M)[0] == pytest.approx(max(1.0 - x, 0.0), abs=1e-9)
+    assert bounds.penetration_m(poses(x), SIZE_M)[0] == pytest.approx(max(1.0 - x, 0.0), abs=1e-9)
 
 
 def test_turned_by_a_quarter_it_fits() -> None:
@@ -47,13 +47,13 @@ def test_turned_by_a_quarter_it_fits() -> None:
 
 def test_a_surface_that_the_object_was_seen_behind_does_not_bound_it() -> None:
     bounds = WallBounds.of(wall(1.2), points(0.9))
-    assert bounds.through_m(poses(0.6), SIZE_M)[0] == 0.0
+    assert bounds.penetration_m(poses(0.6), SIZE_M)[0] == 0.0
 
 
 def test_beyond_its_ends_a_wall_bounds_nothing() -> None:
     bounds = WallBounds.of(wall(length_m=1.0), points(0.9))
-    assert bounds.through_m(poses(0.6, y=2.5), SIZE_M)[0] == 0.0
-    assert bounds.through_m(poses(0.6), SIZE_M)[0] > 0.3
+    assert bounds.penetration_m(poses(0.6, y=2.5), SIZE_M)[0] == 0.0
+    assert bounds.penetration_m(poses(0.6), SIZE_M)[0] > 0.3
 
 
 def test_without_walls_nothing_is_said() -> None:

@@ -43,17 +43,17 @@ def test_the_crop_is_the_object_alone_on_neutral_ground() -> None:
 
 @pytest.mark.parametrize("index", range(len(CHAIRS)))
 def test_a_picture_of_a_shape_is_most_like_that_shape(index: int, tmp_path: Path) -> None:
-    alike = EmbeddedSimilarity(LIBRARY, tmp_path).of(pictured(CHAIRS[index].id), CHAIRS)
+    alike = EmbeddedSimilarity(LIBRARY, tmp_path).similarities(pictured(CHAIRS[index].id), CHAIRS)
     assert int(alike.argmax()) == index
     assert ((alike >= 0) & (alike <= 1)).all()
 
 
 def test_of_what_is_not_seen_only_colours_speak(tmp_path: Path) -> None:
     hidden = replace(pictured("chair"), visible=0.0)
-    alike = EmbeddedSimilarity(LIBRARY, tmp_path).of(hidden, CHAIRS)
+    alike = EmbeddedSimilarity(LIBRARY, tmp_path).similarities(hidden, CHAIRS)
     assert np.ptp(alike) == 0  # all of one wood
     nothing = replace(hidden, mask=np.zeros_like(hidden.mask))
-    assert (EmbeddedSimilarity(LIBRARY, tmp_path).of(nothing, CHAIRS) == 0.5).all()
+    assert (EmbeddedSimilarity(LIBRARY, tmp_path).similarities(nothing, CHAIRS) == 0.5).all()
 
 
 def test_forms_of_shapes_agree_whatever_their_size_and_colours(tmp_path: Path) -> None:
@@ -98,28 +98,28 @@ def test_a_joint_embedding_orders_shapes_and_reads_each_once(
 ) -> None:
     embedding = embedding if tower else replace(embedding, tower=None)
     similarity = JointSimilarity(LIBRARY, embedding, tmp_path)
-    alike = similarity.of(pictured("sofa"), CHAIRS)
+    alike = similarity.similarities(pictured("sofa"), CHAIRS)
     assert alike.max() == pytest.approx(1.0)
     assert len(np.unique(alike)) == len(CHAIRS)
     # What is kept is what the network says of the shape's pictures on neutral ground.
     retained = sorted(tmp_path.rglob("*.npy"))
     assert len(retained) == len(CHAIRS)
     stamps = [k.stat().st_mtime_ns for k in retained]
-    assert (JointSimilarity(LIBRARY, embedding, tmp_path).of(pictured("sofa"), CHAIRS) == alike).all()
+    assert (JointSimilarity(LIBRARY, embedding, tmp_path).similarities(pictured("sofa"), CHAIRS) == alike).all()
     assert [k.stat().st_mtime_ns for k in retained] == stamps
     own = np.load(next(k for k in retained if CHAIRS[2].content_hash in k.name))[0].astype(float)
     assert np.linalg.norm(own) == pytest.approx(1.0, abs=1e-2)
-    assert len(similarity.of(pictured("sofa"), [])) == 0
+    assert len(similarity.similarities(pictured("sofa"), [])) == 0
 
 
 def test_words_and_picture_count_the_same(embedding: ClipEmbedding, tmp_path: Path) -> None:
     similarity, item = JointSimilarity(LIBRARY, embedding, tmp_path), pictured("chair")
-    blind = similarity.of(replace(item, mask=item.mask & False), CHAIRS)
+    blind = similarity.similarities(replace(item, mask=item.mask & False), CHAIRS)
     known = np.stack([np.load(next(tmp_path.rglob(f"{s.content_hash}.npy")))[0] for s in CHAIRS]).astype(np.float32)
     words, picture = known @ embedding.text("a photo of chair"), known @ embedding.picture(item.crop)
     assert np.allclose(blind, np.exp((words - words.max()) / 0.08), atol=1e-4)
     both = 0.5 * (words + picture)
-    assert np.allclose(similarity.of(item, CHAIRS), np.exp((both - both.max()) / 0.08), atol=1e-4)
+    assert np.allclose(similarity.similarities(item, CHAIRS), np.exp((both - both.max()) / 0.08), atol=1e-4)
 
 
 def test_retrieval_ranks_by_the_likeness_it_is_given(embedding: ClipEmbedding, tmp_path: Path) -> None:

@@ -105,7 +105,7 @@ class _Prefers:
 
     shape_id: str
 
-    def of(self, item, shapes):
+    def similarities(self, item, shapes):
         return np.array([float(s.id == self.shape_id) for s in shapes])
 
 

@@ -68,7 +68,7 @@ def test_a_bed_stands_at_a_wall_with_night_stands_at_its_head(seed: int) -> None
     for stand in of(f, "night stand"):
         offset = (stand.pose.position - bed.pose.position)[:2]
         assert offset @ front(bed) < 0
-        assert abs(offset @ wall.along) > bed.size_m[1] / 2
+        assert abs(offset @ wall.direction) > bed.size_m[1] / 2
     sound(f)
 
 
@@ -77,7 +77,7 @@ def test_pictures_hang_above_what_stands_there_and_not_behind_it() -> None:
     sofa = f.against_wall(f.pick("sofa"), walls=f.plan.walls[:1], t_m=2.5)
     picture = f.object(groups.picture_above(f, sofa, "picture"))
     assert picture.corners_world[:, 2].min() >= f.object(sofa).corners_world[:, 2].max()
-    assert abs((picture.pose.position - f.object(sofa).pose.position)[:2] @ f.plan.walls[0].along) < 0.3
+    assert abs((picture.pose.position - f.object(sofa).pose.position)[:2] @ f.plan.walls[0].direction) < 0.3
     groups.pictures(f, 4, "picture")
     assert len(of(f, "picture")) >= 2
     sound(f)
@@ -88,7 +88,7 @@ def test_a_row_stands_side_by_side_along_a_wall() -> None:
     wall = f.plan.walls[0]
     row = [f.object(i) for i in groups.row_along_wall(f, wall, ("cabinet", "wardrobe", "cabinet"))]
     assert len(row) == 3
-    reach = [o.corners_world[:, :2] @ wall.along for o in row]
+    reach = [o.corners_world[:, :2] @ wall.direction for o in row]
     spans = sorted((float(r.min()), float(r.max())) for r in reach)
     assert all(b[0] - a[1] < 0.05 for a, b in pairwise(spans))
     sound(f)

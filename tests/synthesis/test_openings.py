@@ -16,7 +16,7 @@ def test_a_door_stands_on_the_floor_near_an_end_of_a_wall(seed: int) -> None:
     wall = next(w for w in f.plan.walls if w.id == edge.parent)
     assert door.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-6)
     assert door.size_m[0] <= STANDS_OUT_M + 1e-9
-    t = (door.pose.position[:2] - wall.start) @ wall.along
+    t = (door.pose.position[:2] - wall.start) @ wall.direction
     assert min(t, wall.length_m - t) < door.size_m[1] / 2 + 0.55
     sound(f)
     # Nobody puts a box where the door swings.
@@ -27,7 +27,7 @@ def test_a_door_stands_on_the_floor_near_an_end_of_a_wall(seed: int) -> None:
 def test_a_short_wall_gets_no_door() -> None:
     f = furnisher()
     wall = f.plan.walls[0]
-    short = type(wall)("wall_0", wall.start, wall.start + wall.along)
+    short = type(wall)("wall_0", wall.start, wall.start + wall.direction)
     assert add_door(f, short) is None
     assert f.objects == []
 
@@ -55,7 +55,7 @@ def test_a_dressed_window_has_a_curtain_on_each_side() -> None:
     window = f.object(add_window(f, wall, dressed=1.0))
     curtains = [o for o in f.objects if o.category == "curtain"]
     assert len(curtains) == 2
-    sides = [np.sign((c.pose.position - window.pose.position)[:2] @ wall.along) for c in curtains]
+    sides = [np.sign((c.pose.position - window.pose.position)[:2] @ wall.direction) for c in curtains]
     assert sorted(sides) == [-1.0, 1.0]
     sound(f)
 

@@ -26,8 +26,8 @@ def test_an_attic_slopes_down_to_its_low_wall(low):
     foot = wall.start + 0.5 * (wall.end - wall.start)
     at = np.stack([foot, foot + 0.8 * wall.inward, foot + 1.6 * wall.inward, foot + 3 * wall.inward])
     assert plan.roof_m(at) == pytest.approx([1.0, 1.8, 2.6, 2.6])
-    assert plan.under_roof(np.array([[*at[1], 1.7]]))
-    assert not plan.under_roof(np.array([[*at[1], 1.79]]))
+    assert plan.fits_under_roof(np.array([[*at[1], 1.7]]))
+    assert not plan.fits_under_roof(np.array([[*at[1], 1.79]]))
     planes = plan.architecture().planes
     middle = np.array([0.0, 0.0, 0.9])
     assert all(p.normal @ middle - p.offset > 0.5 for p in planes)

@@ -44,8 +44,8 @@ def assert_sound(before: Scene, after: Scene) -> None:
     """What changed meets nothing that it did not meet before, and is inside the room."""
     changed = [o.id for o in after.objects if not before.has_object(o.id) or before.object(o.id) != o]
     collisions = Collisions(built_in_library())
-    earlier = collisions.of(before, [o.id for o in before.objects])
-    assert {frozenset(p) for p in collisions.of(after, changed)} <= {frozenset(p) for p in earlier}
+    earlier = collisions.pairs(before, [o.id for o in before.objects])
+    assert {frozenset(p) for p in collisions.pairs(after, changed)} <= {frozenset(p) for p in earlier}
     outline = RoomFrame.of(after).outline
     for object_id in changed:
         item = after.object(object_id)

@@ -51,4 +51,4 @@ def test_rooms_join_at_doors_and_share_no_floor() -> None:
     assert set(rooms_of_objects(scene).values()) == {r.id for r in scene.rooms}
     assert "a home of 3 rooms" in made.notes[0]
     doors = {o.id for o in scene.objects if o.category == "door"}
-    assert not any(doors & set(pair) for pair in Collisions(built_in_library()).of(scene, sorted(doors)))
+    assert not any(doors & set(pair) for pair in Collisions(built_in_library()).pairs(scene, sorted(doors)))

@@ -85,15 +85,15 @@ class ChainScorer:
 
     def costs(self, walls: PhotoWalls, ceiling_m: float) -> Float[np.ndarray, "w m"]:
         """Cost of every wall in every heading."""
-        low = self._below(walls)
+        low = self._costs_below_ceiling(walls)
         total = self._surfaces(walls, low, (ceiling_m - self.cues.camera.position[2]) / low.near)
         total -= self.settings.cues.edge_weight * (low.foot + self._edge(walls, low.near, ceiling_m)[0])
         total -= self.settings.cues.edge_weight * low.skirting
         total += low.others
         return np.where(low.met & (low.near > self.settings.search.nearest_m * 0.5), total, 1e3)
 
-    def _below(self, walls: PhotoWalls) -> _BelowCeiling:
-        """What of the costs is the same below every ceiling: the same walls are tried below dozens."""
+    def _costs_below_ceiling(self, walls: PhotoWalls) -> _BelowCeiling:
+        """Costs that are the same below every ceiling: the same walls are tried below dozens."""
         if walls not in self._known:
             reach = self.reach(walls)
             met = np.isfinite(reach)

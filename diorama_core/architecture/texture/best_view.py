@@ -62,7 +62,7 @@ def best_view_textures(
     seen: dict[str, dict[int, PlaneView]] = {}
     for plane in planes:
         points, pixel_m = texel_points(plane)
-        views_of_photos = {k: v.of_plane(plane, architecture.planes, points, pixel_m) for k, v in enumerate(photos)}
+        views_of_photos = {k: v.plane_view(plane, architecture.planes, points, pixel_m) for k, v in enumerate(photos)}
         seen[plane.id] = {k: v for k, v in views_of_photos.items() if v is not None}
     sizes = {p.id: texel_points(p)[1] for p in planes}
     gains = exposure_gains([(views, sizes[name]) for name, views in seen.items()], len(photos))

@@ -137,7 +137,7 @@ def plane_textures(
     textures: dict[str, np.ndarray] = {}
     for plane in planes:
         points, pixel_m = texel_points(plane)
-        seen = view.of_plane(plane, architecture.planes, points, pixel_m)
+        seen = view.plane_view(plane, architecture.planes, points, pixel_m)
         if seen is not None and is_enough(seen.shown, pixel_m, plane):
             ground = plane.role == "floor"
             colours = levelled(seen.colours, seen.own, pixel_m) if ground else seen.colours
@@ -168,10 +168,10 @@ class PhotoView:
         self._white = white_level(rgb)
         self._of_objects = () if picture.filler is not None else object_colours(rgb, unsure)
 
-    def of_plane(
+    def plane_view(
         self, plane: Plane, planes: tuple[Plane, ...], points: Float[np.ndarray, "h w 3"], pixel_m: float
     ) -> PlaneView | None:
-        """What the photo shows of a plane; None where that is too little to tell its material.
+        """View of a plane in the photo; None where too little of it is seen to tell its material.
 
         Args:
             plane: One of the room's.

@@ -60,7 +60,7 @@ class WallCandidate:
     area_m2: float
 
     @property
-    def along(self) -> Float[np.ndarray, "2"]:
+    def direction(self) -> Float[np.ndarray, "2"]:
         """Unit direction to the right as seen from the room."""
         return np.array([-self.normal[1], self.normal[0]])
 

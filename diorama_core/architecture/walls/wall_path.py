@@ -246,7 +246,7 @@ def _square_to(surface: MeasuredSurface, wall: WallCandidate, between: Bool[np.n
     """The wall at a right angle to another through points, facing the camera; none where they do not agree on it."""
     if between.sum() < SETTINGS.return_points:
         return None
-    normal = wall.along
+    normal = wall.direction
     offset = float(np.median(surface.points[between, :2] @ normal))
     if float(surface.camera_position[:2] @ normal) < offset:
         normal, offset = -normal, -offset

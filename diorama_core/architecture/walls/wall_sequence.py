@@ -235,7 +235,7 @@ def _beyond_view(
     run: Run, side: float, origin: Float[np.ndarray, "2"], *, left: bool, settings: WallSettings
 ) -> Float[np.ndarray, "2"]:
     """Where the first or last wall ends: behind the camera, a little outside the picture, or where it was last seen."""
-    outward = -run.wall.along if left else run.wall.along
+    outward = -run.wall.direction if left else run.wall.direction
     if outward[1] < -0.7:
         return _wall_point_at_y(run.wall, origin[1] - settings.behind_camera_m)
     seen = run.first if left else run.last

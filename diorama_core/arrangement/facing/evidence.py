@@ -70,7 +70,7 @@ class FacingRoom(ArrayValue):
     camera_xy: Float[np.ndarray, "2"]
     walls: WallSamples
 
-    def toward_camera(self, i: int) -> Float[np.ndarray, "2"]:
+    def camera_direction(self, i: int) -> Float[np.ndarray, "2"]:
         """Unit direction from an object to the camera, seen from above."""
         return unit(self.camera_xy - self.objects[i].centre[:2])
 

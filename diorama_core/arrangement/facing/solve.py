@@ -83,11 +83,11 @@ def beliefs(factors: Factors, weights: FacingWeights) -> tuple[Float[np.ndarray,
     count = len(factors.room.objects)
     picture, single = np.zeros((count, HEADINGS)), np.zeros((count, HEADINGS))
     for name, i, values in factors.ones:
-        (picture if name == PICTURE else single)[i] += weights.of(name) * values
+        (picture if name == PICTURE else single)[i] += weights.weight_of(name) * values
     tables: dict[tuple[int, int], np.ndarray] = {}
     for name, i, j, values in factors.pairs:
         for a, b, table in ((i, j, values), (j, i, values.T)):
-            tables[a, b] = tables.get((a, b), 0.0) + weights.of(name) * table
+            tables[a, b] = tables.get((a, b), 0.0) + weights.weight_of(name) * table
     messages = {edge: np.zeros(HEADINGS) for edge in tables}  # from the second to the first
     incoming = np.zeros((count, HEADINGS))
     for _ in range(ROUNDS if tables else 0):
@@ -114,7 +114,7 @@ def _shares(
     for name, i, j, table in factors.pairs:
         terms_of_pair += [(i, name, table[:, headings[j]]), (j, name, table[headings[i]])]
     for i, name, values in terms_of_pair:
-        nats = weights.of(name) * float(values[headings[i]] - values[rivals[i]])
+        nats = weights.weight_of(name) * float(values[headings[i]] - values[rivals[i]])
         shares[i, name] = shares.get((i, name), 0.0) + nats
     ids = [item.object_id for item in factors.room.objects]
     return tuple(

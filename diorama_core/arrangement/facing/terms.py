@@ -44,7 +44,7 @@ class FacingWeights:
     side_by_side: float
     as_bed: float
 
-    def of(self, term: str) -> float:
+    def weight_of(self, term: str) -> float:
         """The weight of a term."""
         return float(getattr(self, term))
 
@@ -104,7 +104,7 @@ def shown(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Agreement
         kind = room.objects[i].kind
         if kind not in kinds if kinds is not None else kind in SEATS | STORAGE | SCREENS | LOUNGE | NO_FRONT:
             return None
-        cosine = heading_cosine(room, i, room.toward_camera(i))
+        cosine = heading_cosine(room, i, room.camera_direction(i))
         return 0.25 * cosine + 0.75 * np.minimum(cosine, 0.0)
 
     return one
@@ -192,7 +192,7 @@ def leaning(room: FacingRoom, i: int) -> Agreement | None:
     on_bed = carrier.kind in BEDS
     long = int(np.argmax(carrier.size_m[:2]))
     axis = carrier.axes[long if on_bed else 1 - long]
-    inward = carrier.centre[:2] - item.centre[:2] if on_bed else room.toward_camera(i)
+    inward = carrier.centre[:2] - item.centre[:2] if on_bed else room.camera_direction(i)
     return heading_cosine(room, i, axis if axis @ inward >= 0 else -axis)
 
 

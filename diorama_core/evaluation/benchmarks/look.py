@@ -243,9 +243,9 @@ def _outline_iou(
 ) -> float:
     """Intersection over union of both whole outlines within the photo, each through its own camera."""
     assert true.box_px is not None
-    window = Window.around(true.box_px, MARGIN, CELLS)
+    window = Window.from_box(true.box_px, MARGIN, CELLS)
     k = true_camera.intrinsics
-    inside = window.inside(k.width, k.height)
+    inside = window.is_in_photo(k.width, k.height)
     a, b = (
         _outline(library.mesh(o.shape_id), o.pose, seen_by, window) & inside
         for o, seen_by in ((true, true_camera), (item, camera))

@@ -86,7 +86,7 @@ def measure(asked: Asked, scene: Scene, library: ShapeLibrary) -> TextScene:
     objects, room = _relations(asked, scene, frame, failures)
     standing = [o for o in scene.objects if o.category not in OPENING_CATEGORIES]
     supported = sum(_is_supported(scene, library, o) for o in standing)
-    hit = {i for pair in Collisions(library).of(scene, [o.id for o in standing]) for i in pair}
+    hit = {i for pair in Collisions(library).pairs(scene, [o.id for o in standing]) for i in pair}
     beyond = [o for o in standing if not lie_within(footprint_of(o)[None], frame.outline, OUTSIDE_M)[0]]
     failures += [f"{o.label} collides" for o in standing if o.id in hit]
     failures += [f"{o.label} is outside" for o in beyond]

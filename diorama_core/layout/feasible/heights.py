@@ -57,7 +57,7 @@ def joint_heights(problem: Problem, observations: PhotoObservations) -> tuple[Pr
     p[chosen, 2] = (feet + heights / 2)[changed]
     holds = np.isin(members, problem.parent)
     fixed = members[holds | ~observations.contradicted[members]]
-    return replace(problem, scale=scale, p=p), observations.at_heights(fixed, scale[:, 2])
+    return replace(problem, scale=scale, p=p), observations.fix_heights(fixed, scale[:, 2])
 
 
 def _chains(problem: Problem, observations: PhotoObservations) -> _Chains:
@@ -100,13 +100,15 @@ def _observed_place(problem: Problem, i: int) -> RestingSurface:
         return surface
     corners = problem.p[i] + box_corners(size) @ problem.R[i].T
     places = problem.levels[i]
-    return min(places, key=lambda s: box_misfit(corners, size, s.at(problem.R[j], problem.p[j], problem.scale[j])))
+    return min(
+        places, key=lambda s: box_misfit(corners, size, s.transform(problem.R[j], problem.p[j], problem.scale[j]))
+    )
 
 
 def _observed_level(problem: Problem, i: int) -> float:
     """Height of the place of an object on its supporter as observed."""
     j = int(problem.parent[i])
-    return _observed_place(problem, i).at(problem.R[j], problem.p[j], problem.scale[j]).level
+    return _observed_place(problem, i).transform(problem.R[j], problem.p[j], problem.scale[j]).level
 
 
 def _solved(

@@ -52,7 +52,7 @@ class DragSolver:
         i = self.index
         if not self.problem.free[i]:
             return self.scene
-        problem, edge = self._at(pose)
+        problem, edge = self._problem_at(pose)
         structure = self._settled(problem)
         weight = np.tile(np.eye(2), (problem.count, 1, 1))
         program = build_program(problem, structure, weight)
@@ -63,7 +63,7 @@ class DragSolver:
         moved = edits.place(self.scene, problem.poses(structure.R, p, structure.scale))
         return moved if edge is None else edits.attach(moved, edge)
 
-    def _at(self, pose: Pose) -> tuple[Problem, Support | None]:
+    def _problem_at(self, pose: Pose) -> tuple[Problem, Support | None]:
         """The problem with the object at the hand's pose, its load along with it, and its new edge if any."""
         old, i = self.problem, self.index
         R, p, scale = old.R.copy(), old.p.copy(), old.scale.copy()
@@ -95,7 +95,7 @@ class DragSolver:
         if supported is None or problem.contact[i][2] != -1.0:
             return problem, None
         j = int(problem.parent[i])
-        world = supported if j < 0 else supported.at(problem.R[j], problem.p[j], problem.scale[j])
+        world = supported if j < 0 else supported.transform(problem.R[j], problem.p[j], problem.scale[j])
         foot = problem.p[i] - 0.5 * problem.R[i][:, 2] * problem.shape_size[i][2] * problem.scale[i][2]
         if j >= 0 and overhang_m(world, foot) <= self.leaves_m:
             return problem, None
@@ -137,7 +137,7 @@ def _places(
         if item.id in riders:
             continue
         for number, surface in enumerate(object_surfaces(library.shape(item.shape_id), item)):
-            world = surface.in_world(item.pose)
+            world = surface.to_world(item.pose)
             if world.normal[2] > 0.98:
                 places.append((world, Support(child, item.id, parent_surface=number)))
     return tuple(places)

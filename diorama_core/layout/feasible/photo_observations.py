@@ -74,7 +74,7 @@ class PhotoObservations:
         least[i] = np.minimum(least[i], most[i])
         return replace(self, most=most, least=least)
 
-    def at_heights(self, members: Int[np.ndarray, " m"], scale: Float[np.ndarray, " n"]) -> PhotoObservations:
+    def fix_heights(self, members: Int[np.ndarray, " m"], scale: Float[np.ndarray, " n"]) -> PhotoObservations:
         """These observations with the heights of some objects decided: the scales of all along their own up axes."""
         least, most = self.least.copy(), self.most.copy()
         least[members, 2] = most[members, 2] = scale[members]
@@ -243,7 +243,7 @@ def _loads(problem: Problem, i: int) -> Float[np.ndarray, "m 2"]:
         size = problem.shape_size[k] * problem.scale[k]
         corners = problem.p[k] + box_corners(size) @ problem.R[k].T
         flat = [s for s in problem.levels[k] if float(s.normal[2]) > problem.settings.upward]
-        posed = [s.at(problem.R[i], problem.p[i], problem.scale[i]) for s in flat]
+        posed = [s.transform(problem.R[i], problem.p[i], problem.scale[i]) for s in flat]
         if posed and problem.firm[k] == 1.0:
             nearest = int(np.argmin([box_misfit(corners, size, s) for s in posed]))
             foot = float(corners[:, 2].min())

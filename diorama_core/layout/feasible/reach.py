@@ -67,7 +67,7 @@ def _needed(
     j = int(problem.parent[i])
     surface = structure.surface[i]
     assert surface is not None, "it stands on something"
-    place: RestingSurface = surface.at(structure.R[j], structure.p[j], structure.scale[j])
+    place: RestingSurface = surface.transform(structure.R[j], structure.p[j], structure.scale[j])
     centre, grown = _seen(problem, i, place.level, eye)
     reach = float(reach_of(problem.footing[i], structure.R[i], grown * problem.scale[i], outward[None])[0])
     edge = float((place.polygon @ outward).max())

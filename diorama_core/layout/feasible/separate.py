@@ -118,7 +118,7 @@ def build_program(
 def _placed(structure: Structure, problem: Problem, i: int) -> RestingSurface | None:
     """Where an object rests, in the world."""
     place, j = structure.surface[i], int(problem.parent[i])
-    return place if place is None or j < 0 else place.at(structure.R[j], structure.p[j], structure.scale[j])
+    return place if place is None or j < 0 else place.transform(structure.R[j], structure.p[j], structure.scale[j])
 
 
 def _wall_rows(

@@ -89,4 +89,4 @@ def _level(problem: Problem, walk: Walk, i: int) -> RestingSurface | None:
 
 def _posed(walk: Walk, problem: Problem, i: int, surface: RestingSurface) -> RestingSurface:
     j = int(problem.parent[i])
-    return surface if j < 0 else surface.at(walk.R[j], walk.p[j], walk.scale[j])
+    return surface if j < 0 else surface.transform(walk.R[j], walk.p[j], walk.scale[j])

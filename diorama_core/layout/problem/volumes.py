@@ -67,7 +67,7 @@ class Volumes:
         )
         return cls(supported, problem.parent[supported], local, np.abs(normal).argmax(axis=1))
 
-    def at(
+    def world_volumes(
         self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
     ) -> WorldVolumes:
         """The volumes when objects are at these poses.

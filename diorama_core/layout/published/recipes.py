@@ -144,7 +144,7 @@ def _all_at_once(problem: Problem, state: State, schedule: StageSchedule, weight
         turn = torch.zeros(problem.count, 3, dtype=torch.float64, requires_grad=True)
         p = torch.tensor(state.p, requires_grad=True)
         scale = torch.tensor(state.scale, requires_grad=True)
-        values = terms.at(turn, p, scale, state)
+        values = terms.evaluate(turn, p, scale, state)
         slopes = torch.autograd.grad(torch.stack(list(values.values())).sum(), [turn, p, scale], allow_unused=True)
         for k, slope in enumerate(slopes):
             velocity[k] = schedule.momentum * velocity[k] + (0.0 if slope is None else slope * free)
@@ -173,7 +173,9 @@ class _Terms:
         if len(self.supported):
             self.template = torch.tensor(contact_templates(problem, self.supported)[0])
 
-    def at(self, turn: torch.Tensor, p: torch.Tensor, scale: torch.Tensor, state: State) -> Mapping[str, torch.Tensor]:
+    def evaluate(
+        self, turn: torch.Tensor, p: torch.Tensor, scale: torch.Tensor, state: State
+    ) -> Mapping[str, torch.Tensor]:
         """3 e_align, e_sem, 5 e_place, e_rel, e_vol and e_col, weighted; adherence is part of the first and third.
 
         Args:
@@ -210,7 +212,7 @@ class _Terms:
         if not len(self.supported):
             return torch.zeros((), dtype=torch.float64)
         supported = torch.tensor(self.supported)
-        here = self.volumes.at(state.R, state.p, state.scale)
+        here = self.volumes.world_volumes(state.R, state.p, state.scale)
         outward, offset, normal = torch.tensor(here.outward), torch.tensor(here.offset), torch.tensor(here.normal)
         clearance, level = torch.tensor(here.clearance), torch.tensor(here.level)
         corners = p[supported][:, None] + torch.einsum(

@@ -158,7 +158,7 @@ def placement_stage(
     velocity, start = np.zeros((problem.count, 3)), state.p.copy()
     free = problem.free.astype(np.float64)[:, None]
     for step, rate in enumerate(schedule.rates()):
-        value, gradient = cost.of_positions(state.p)
+        value, gradient = cost.value_and_gradient(state.p)
         distance, back = gradients.relative(state.p - start, problem.relations, links)
         slope = 5.0 * weights.place * gradient + weights.neighbours * back
         velocity = schedule.momentum * velocity + slope * free
@@ -192,7 +192,7 @@ def space_stage(
     nested = bool((problem.parent >= 0).any())
     for step, rate in enumerate(schedule.rates()):
         if step == 0 or nested:
-            here = volumes.at(state.R, state.p, state.scale)
+            here = volumes.world_volumes(state.R, state.p, state.scale)
         p, scale = state.p[supported], state.scale[supported]
         tilt = np.abs(np.matmul(here.normal[:, None, :], R)[:, 0]) * half
         corners = p[:, None, :] + np.matmul(template * scale[:, None, :], R.transpose(0, 2, 1))
@@ -239,7 +239,7 @@ def refinement_stage(
             pairs = gradients.near_pairs(R, centre, size, apart, near_m)
             boxes, links = gradients.BoxPairs.of(R, size, pairs, walls_from=n), gradients.incidence(pairs, len(centre))
             seen = state.p.copy()
-        value, gradient = cost.of_positions(state.p)
+        value, gradient = cost.value_and_gradient(state.p)
         overlap, away = boxes.collision(centre, links)
         slope = 5.0 * weights.place * gradient + weights.collision * away[:n]
         velocity = schedule.momentum * velocity + slope * free
@@ -271,8 +271,8 @@ class PlacementCost:
         level = np.einsum("ec,ec->e", point - face, normal)
         return cls(normal, level, np.abs(normal).sum(axis=1), edges, to_child - to_supporter)
 
-    def of_positions(self, p: Float[np.ndarray, "n 3"]) -> tuple[float, Float[np.ndarray, "n 3"]]:
-        """Its value and its gradient."""
+    def value_and_gradient(self, p: Float[np.ndarray, "n 3"]) -> tuple[float, Float[np.ndarray, "n 3"]]:
+        """Value and gradient at these positions."""
         relative = self.scatter.T @ p
         distance = np.einsum("ec,ec->e", relative, self.slope) - self.level
         value = float(np.abs(distance) @ self.weight)

@@ -210,13 +210,13 @@ class RoomLeft:
         """
         affected = [i, *np.flatnonzero(self.problem.parent == i)]
         worse = support_errors(self.problem, R, p, scale)[affected] > self.support_errors[affected]
-        if worse.any() or self._through_wall(i, R, p, scale):
+        if worse.any() or self._enters_wall(i, R, p, scale):
             return False
         depths = part_overlaps(self.problem, R, p, scale, only=i, supporters=True)
         return all(depth <= self.overlaps_m.get(pair, 0.0) + ROUNDING_M for pair, depth in depths.items())
 
-    def _through_wall(self, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> bool:
-        """Whether the object is farther behind a wall than it was."""
+    def _enters_wall(self, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> bool:
+        """True if the object is farther behind a wall than it was."""
         problem, local = self.problem, box_corners(self.problem.shape_size[i])
         was = problem.p[i] + (local * problem.scale[i]) @ problem.R[i].T
         now = p[i] + (local * scale[i]) @ R[i].T

@@ -104,7 +104,7 @@ class Search:
         surface, parent = self.problem.surface[i], int(self.problem.parent[i])
         assert surface is not None, "what nothing holds does not move"
         if parent >= 0:
-            surface = surface.at(poses.R[parent], poses.position[parent], poses.scale[parent])
+            surface = surface.transform(poses.R[parent], poses.position[parent], poses.scale[parent])
         is_round = self.picture.casters[i].round_from_above
         return freedom(self.problem, i, surface, sized=self.sized[i], is_round=is_round, settings=self.settings)
 

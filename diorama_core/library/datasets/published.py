@@ -56,7 +56,7 @@ def as_sources(dataset: Dataset, folder: Path, given: Given) -> tuple[ModelSourc
     entries = list(dataset.entries(folder))
     if not entries:
         raise InputError(f"{folder}: no model of {dataset.name} lies there; name the folder that it was unpacked to")
-    known = {e.path.relative_to(folder).as_posix(): given.over(_named(e, dataset)) for e in entries}
+    known = {e.path.relative_to(folder).as_posix(): given.override(_named(e, dataset)) for e in entries}
     ids = {e.path: e.id for e in entries}
     return sources(folder, [e.path for e in entries], Given(), known, ids)
 

@@ -132,7 +132,7 @@ def sources(
             target = (ids or {}).get(path) or slug(named)
             shape_id = next(i for i in _variants(target, path.suffix[1:].lower()) if i not in taken)
             taken.add(shape_id)
-            known = table[within].over(given) if within in table else given
+            known = table[within].override(given) if within in table else given
             key = _key(path, f"{within}{member}", shape_id, known)
             made.append(ModelSource(path, folder, shape_id, key, known, member))
     return tuple(made)

@@ -45,8 +45,8 @@ class Given:
             name = shortened(self.category, 60)
             raise InputError(f"category {name!r} is not known; {taxonomy.resolve(name).note}")
 
-    def over(self, other: Given) -> Given:
-        """This, and where it says nothing, the other."""
+    def override(self, other: Given) -> Given:
+        """The other, overridden by what this states."""
         stated = {k: v for k, v in vars(self).items() if v not in (None, "", ()) and k != "reason"}
         speakers = [g.reason for g in (self, other) if (g.up or g.front or g.unit_m or g.category) is not None]
         return replace(other, **stated, reason=" and ".join(dict.fromkeys(speakers)) or self.reason)

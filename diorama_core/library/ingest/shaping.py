@@ -155,7 +155,7 @@ def ingest_model(
         facts = Given(
             up="+z", front="+x", unit_m=1.0, category=raw.own.category, reason="the file, which Diorama wrote"
         )
-        given = given.over(facts)
+        given = given.override(facts)
     elif square:
         model, note = _squared(model, convention, given)
         remarks = (*remarks, *note)

@@ -51,31 +51,31 @@ class CombinedLibrary:
 
     def shape(self, shape_id: str) -> Shape:
         """One record with its support surfaces; raises `LibraryError` when unknown."""
-        return self._of(shape_id).shape(shape_id)
+        return self._library_of(shape_id).shape(shape_id)
 
     def mesh(self, shape_id: str) -> trimesh.Trimesh:
         """Geometry only, one mesh in the canonical frame. Shared: do not change it."""
-        return self._of(shape_id).mesh(shape_id)
+        return self._library_of(shape_id).mesh(shape_id)
 
     def parts(self, shape_id: str) -> trimesh.Scene:
         """Geometry with materials, in the canonical frame. Shared: do not change it."""
-        return self._of(shape_id).parts(shape_id)
+        return self._library_of(shape_id).parts(shape_id)
 
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB, +Z up, metres."""
-        return self._of(shape_id).glb(shape_id)
+        return self._library_of(shape_id).glb(shape_id)
 
     def thumbnail(self, shape_id: str) -> bytes | None:
         """The picture that came with the shape, where its library keeps one."""
-        thumbnail = getattr(self._of(shape_id), "thumbnail", None)
+        thumbnail = getattr(self._library_of(shape_id), "thumbnail", None)
         return None if thumbnail is None else thumbnail(shape_id)
 
     def is_built(self, shape_id: str) -> bool:
         """Whether what its library derives from the shape is on disk; stored libraries have it from the start."""
-        built = getattr(self._of(shape_id), "is_built", None)
+        built = getattr(self._library_of(shape_id), "is_built", None)
         return True if built is None else bool(built(shape_id))
 
-    def _of(self, shape_id: str) -> ShapeLibrary:
+    def _library_of(self, shape_id: str) -> ShapeLibrary:
         self._refresh()
         owner = self._owner.get(base_id(shape_id))
         if owner is None:

@@ -151,9 +151,9 @@ class PromptedMasks:
 
     def segment(self, inputs: Inputs, progress: Progress) -> tuple[DetectedObject, ...]:
         """One object per instance the user masked and per box no mask belongs to, in the order given."""
-        return outlined(inputs, self._inside_boxes, progress)
+        return outlined(inputs, self._outline_boxes, progress)
 
-    def _inside_boxes(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: list[LabelledBox], progress: Progress) -> Outlined:
+    def _outline_boxes(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: list[LabelledBox], progress: Progress) -> Outlined:
         if not boxes:
             return []
         progress.report(0.0, "Outlining objects")

@@ -113,7 +113,9 @@ def _floor_cost(obj: ObjectSurroundings, settings: GeometricGraphSettings) -> fl
 def _wall_cost(obj: ObjectSurroundings, settings: GeometricGraphSettings) -> float:
     on_floor = 2.0 if obj.bottom_m < 0.1 and obj.category.mount != "wall" else 0.0
     return (
-        on_floor + _gap_cost(max(obj.behind_m, 0.0), 0.25, settings) + 0.5 * settings.below_weight * obj.below_objects
+        on_floor
+        + _gap_cost(max(obj.behind_m, 0.0), 0.25, settings)
+        + 0.5 * settings.below_weight * obj.rim_share_on_objects
     )
 
 

@@ -65,7 +65,7 @@ class ObjectSurroundings:
     """Distance to the room's surface seen just around the object, along the line of sight; 0 where unknown."""
 
     @property
-    def below_objects(self) -> float:
+    def rim_share_on_objects(self) -> float:
         """Share of the lower rim that ends on other objects."""
         return 1.0 - self.below.get("floor", 0.0)
 

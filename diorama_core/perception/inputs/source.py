@@ -37,7 +37,7 @@ class Source:
         """The end of its name in lower case, as ".png"."""
         return Path(self.name).suffix.lower()
 
-    def beside(self, *patterns: str) -> tuple[Source, ...]:
+    def sibling_files(self, *patterns: str) -> tuple[Source, ...]:
         """Small files that lie beside it and whose names match one of the patterns, in the order of the patterns."""
         files = [c for pattern in patterns for c in self.companions if Path(c.name).match(pattern)]
         if self.path is not None:

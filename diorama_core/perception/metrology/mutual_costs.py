@@ -31,8 +31,8 @@ class CarriedCosts:
     """By carrier and cuboid."""
     settings: MetrologySettings = SETTINGS
 
-    def of(self, readings: Mapping[int, Cuboids]) -> dict[int, Float[np.ndarray, "_"]]:
-        """Per object the cost of each of its readings; 0 where there is nothing to choose, or nothing to carry.
+    def costs(self, readings: Mapping[int, Cuboids]) -> dict[int, Float[np.ndarray, "_"]]:
+        """Cost of each reading of each object; 0 where there is nothing to choose, or nothing to carry.
 
         Args:
             readings: Cuboids that each object may be, by index.

@@ -202,7 +202,7 @@ def _arranged(
 ) -> dict[int, Placement]:
     readings = readings_of(solved, observations, view, settings)
     standing = [i for i in readings if observations.categories[i].mount == "floor"]
-    loads = carried.of({i: readings[i].boxes for i in standing})
+    loads = carried.costs({i: readings[i].boxes for i in standing})
     costs = [readings[i].costs + loads[i] for i in standing]
     chosen = arrange(
         [readings[i].boxes for i in standing], costs, [observations.categories[i] for i in standing], settings.placement

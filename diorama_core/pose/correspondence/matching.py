@@ -30,8 +30,8 @@ class Matches:
     similarity: Float[np.ndarray, "v k"]
     count: Int[np.ndarray, " v"]
 
-    def of_views(self, views: slice) -> Matches:
-        """Those of some of the views."""
+    def select_views(self, views: slice) -> Matches:
+        """Matches of some of the views."""
         return Matches(self.query[views], self.template[views], self.similarity[views], self.count[views])
 
     @property

@@ -125,7 +125,7 @@ class Compared:
         return source[known], target[known]
 
     @property
-    def by_belief(self) -> Int[np.ndarray, " v"]:
+    def ranked_views(self) -> Int[np.ndarray, " v"]:
         """Views by the mean similarity of their matches and how many there are, best first."""
         believed = self.matches.mean_similarity * np.sqrt(self.matches.count)
         return np.argsort(-believed, kind="stable")

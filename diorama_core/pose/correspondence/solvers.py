@@ -139,14 +139,14 @@ class CorrespondencePose:
             matches, similarity = cyclic_matches(alike, inside), template_scores(alike)
             for k, e in enumerate(encoded):
                 views = slice(k * len(self.grid), (k + 1) * len(self.grid))
-                compared.append(Compared(crop, e.templates, matches.of_views(views), similarity[views]))
+                compared.append(Compared(crop, e.templates, matches.select_views(views), similarity[views]))
         return compared
 
     def _solve(self, kind: Kind, compared: Compared) -> Rigid | None:
         if kind == "correspondence":
-            return from_matches(compared, compared.by_belief[:POOLED_VIEWS], self.scale_network)
+            return from_matches(compared, compared.ranked_views[:POOLED_VIEWS], self.scale_network)
         if kind == "zsp":
-            return from_matches(compared, compared.by_belief[:1])
+            return from_matches(compared, compared.ranked_views[:1])
         best = int(compared.similarity.argmax())
         if kind == "gigapose-like":
             return from_one_match(compared, best, self.scale_network)

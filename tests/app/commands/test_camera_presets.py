@@ -33,7 +33,7 @@ def test_the_room_is_seen_whole(session, client, views, moves) -> None:
 
 @pytest.mark.parametrize("back", [(0.0, -1e-3, 1.0), (0.0, -1.0, 0.0), (-1.0, 0.0, 0.0), (1.0, 0.0, 0.0)])
 def test_views_along_an_axis_look_that_way_nearly_in_parallel(client, views, moves, back) -> None:
-    views.along(client, back)
+    views.look(client, back)
     position, target, fov = moves[-1]
     way = (position - target) / np.linalg.norm(position - target)
     np.testing.assert_allclose(way, np.array(back) / np.linalg.norm(back), atol=0.02)

@@ -280,7 +280,7 @@ def test_jobs_are_listed_newest_first_and_built_oldest_first(tmp_path: Path, mon
     queue = _queue(tmp_path)
     assert [job.id for job in queue.jobs()] == ["over", "d", "b", "a", "c"]
     queue.start()
-    until(lambda: all(job.over for job in queue.jobs()), "all are built")
+    until(lambda: all(job.is_over for job in queue.jobs()), "all are built")
     queue.close()
     assert (built[0], set(built[1:3]), built[3:]) == ("c", {"a", "b"}, ["d"])
     assert all(job.state == "done" and job.error is None for job in queue.jobs())

@@ -65,7 +65,7 @@ class JobMachine(RuleBasedStateMachine):
 
     def _running(self) -> str | None:
         """The job that is being built, once the queue has come to rest."""
-        waiting = [j for j in self.queue.jobs() if not j.over]
+        waiting = [j for j in self.queue.jobs() if not j.is_over]
         if not waiting:
             return None
         until(lambda: any(j.state == "running" and j.id == self.building for j in self.queue.jobs()))
@@ -93,7 +93,7 @@ class JobMachine(RuleBasedStateMachine):
 
     def _settled(self, job_id: str) -> None:
         job = asyncio.run(self.queue.wait(job_id, SETTLED_S))
-        assert job.over
+        assert job.is_over
         self.over[job_id] = job.state
 
     @rule(job_id=job_ids)
@@ -143,8 +143,8 @@ class JobMachine(RuleBasedStateMachine):
         for job_id, job in before.items():
             if job_id in self.damaged:
                 continue
-            assert after[job_id].over == job.over, "what was not over is taken up again"
-        self.over = {job_id: state for job_id, state in self.over.items() if job_id in after and after[job_id].over}
+            assert after[job_id].is_over == job.is_over, "what was not over is taken up again"
+        self.over = {job_id: state for job_id, state in self.over.items() if job_id in after and after[job_id].is_over}
 
     @invariant()
     def all_are_listed_and_stay_what_they_became(self) -> None:

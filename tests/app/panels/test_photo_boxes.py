@@ -38,7 +38,7 @@ class Known(suggestions.Suggestions):
     def name(self, box: Box, marked: Sequence[Box], then: Callable[[LabelledBox], None]) -> None:
         then(LabelledBox(box, "stool", "stool"))
 
-    def at(self, x: float, y: float, marked: Sequence[Box], then: Callable[[LabelledBox | None], None]) -> None:
+    def suggest(self, x: float, y: float, marked: Sequence[Box], then: Callable[[LabelledBox | None], None]) -> None:
         holding = (b for b in (CHAIR, LAMP) if b.box[0] <= x <= b.box[2] and b.box[1] <= y <= b.box[3])
         then(next(holding, None))
 

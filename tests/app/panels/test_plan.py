@@ -110,12 +110,12 @@ def test_what_is_no_edit_is_refused_and_changes_nothing(
 def test_outlines_are_boxes_until_the_shapes_are_known(session) -> None:
     outlines, found = ShapeOutlines(session.library), []
     table = session.scene.object("table_1")
-    (box,) = outlines.of(table)
+    (box,) = outlines.object_outlines(table)
     low, high = table.corners_world.min(axis=0)[:2], table.corners_world.max(axis=0)[:2]
     np.testing.assert_allclose(np.stack([box.min(axis=0), box.max(axis=0)]), [low, high], atol=1e-6)
     outlines.look_for(session.scene, lambda: found.append(True))
     until(lambda: bool(found))
-    shape = np.concatenate(outlines.of(table))
+    shape = np.concatenate(outlines.object_outlines(table))
     np.testing.assert_allclose(np.stack([shape.min(axis=0), shape.max(axis=0)]), [low, high], atol=0.01)
 
 
@@ -125,6 +125,6 @@ def test_a_shape_that_is_lost_stays_a_box_and_the_others_are_drawn(session) -> N
     outlines, found = ShapeOutlines(session.library), []
     outlines.look_for(scene, lambda: found.append(True))
     until(lambda: bool(found))
-    assert len(outlines.of(scene.objects[0])) == 1
+    assert len(outlines.object_outlines(scene.objects[0])) == 1
     outlines.look_for(scene, lambda: found.append(True))
     assert len(found) == 1, "it is not looked for again"

@@ -58,7 +58,7 @@ def test_a_click_tells_a_box_around_it_with_its_likeliest_name() -> None:
     told: queue.Queue[LabelledBox | None] = queue.Queue()
     photo = plain_photo()
     suggestions = Suggestions(photo, lambda: None)
-    suggestions.at(320.0, 300.0, (), told.put)
+    suggestions.suggest(320.0, 300.0, (), told.put)
     found = told.get(timeout=60)
     assert found is not None
     assert found.box[0] <= 320 <= found.box[2]
@@ -91,12 +91,12 @@ def test_the_outline_of_the_last_box_arrives_and_stays() -> None:
 def test_outlines_that_nobody_waits_for_hold_up_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     traced, photo = list[Box](), plain_photo(320, 240)
 
-    def inside_box(self: object, rgb: np.ndarray, box: Box) -> tuple[np.ndarray, float]:
+    def segment_box(self: object, rgb: np.ndarray, box: Box) -> tuple[np.ndarray, float]:
         if rgb is photo.rgb:  # an earlier test's may still be worked out
             traced.append(box)
         return np.ones(rgb.shape[:2], dtype=bool), 1.0
 
-    monkeypatch.setattr("diorama_core.perception.masks.EmbeddedMasks.inside_box", inside_box)
+    monkeypatch.setattr("diorama_core.perception.masks.EmbeddedMasks.segment_box", segment_box)
     begin, ready = threading.Event(), threading.Event()
     worker = ThreadPoolExecutor(1)
     monkeypatch.setattr(suggesting, "_ASKED", worker)
@@ -120,7 +120,7 @@ def test_what_waits_for_its_turn_is_left_out_when_nobody_looks_any_more(monkeypa
     suggestions = Suggestions(plain_photo(), lambda: None, lambda: here[0])
     worker.submit(begin.wait, 30)
     suggestions.boxes()
-    suggestions.at(20.0, 20.0, (), told.put)
+    suggestions.suggest(20.0, 20.0, (), told.put)
     here[0] = False
     begin.set()
     worker.submit(lambda: None).result(30)
@@ -156,7 +156,7 @@ def test_a_network_for_everyday_objects_proposes_names_and_is_clicked(
     assert chair.label == "chair"
     np.testing.assert_allclose(chair.box, CHAIR, atol=1.0)
     x, y = (CHAIR[0] + CHAIR[2]) / 2, (CHAIR[1] + CHAIR[3]) / 2
-    suggestions.at(x, y, (), told.put)
+    suggestions.suggest(x, y, (), told.put)
     clicked = told.get(timeout=60)
     assert clicked is not None
     np.testing.assert_allclose(clicked.box, CHAIR, atol=1.0)
@@ -172,7 +172,7 @@ def test_a_damaged_network_does_not_stop_marking(
     install(store, "yolox-nano", [tmp_path / "y.onnx"])
     monkeypatch.setenv("DIORAMA_MODELS", str(store.folder))
     told = queue.Queue[LabelledBox | None]()
-    Suggestions(plain_photo(), lambda: None).at(320.0, 300.0, (), told.put)
+    Suggestions(plain_photo(), lambda: None).suggest(320.0, 300.0, (), told.put)
     assert told.get(timeout=60) is not None
     assert "marking goes on without the network" in caplog.text
 
@@ -193,7 +193,7 @@ def test_without_weights_nothing_is_suggested(monkeypatch: pytest.MonkeyPatch, t
     assert suggestions.boxes() == ()
     assert suggestions.outline(BOX) is None
     told: queue.Queue[LabelledBox | None] = queue.Queue()
-    suggestions.at(20.0, 20.0, (), told.put)
+    suggestions.suggest(20.0, 20.0, (), told.put)
     assert told.get(timeout=60) is None
 
 
@@ -205,7 +205,7 @@ def test_a_click_waits_for_no_photo_that_is_looked_at_ahead(monkeypatch: pytest.
     suggestions = Suggestions(plain_photo(), lambda: None)
     ahead.submit(begin.wait, 60)
     suggestions.boxes()
-    suggestions.at(20.0, 20.0, (), told.put)
+    suggestions.suggest(20.0, 20.0, (), told.put)
     told.get(timeout=60)
     assert not begin.is_set()
     begin.set()

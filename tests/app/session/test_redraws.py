@@ -129,16 +129,16 @@ def test_the_disk_is_looked_at_once_a_second_and_after_own_changes() -> None:
         looked.append(1)
         return len(looked)
 
-    assert [glances.of("name", look), glances.of("name", look)] == [1, 1]
-    assert glances.of("versions", lambda: "others") == "others"
+    assert [glances.get("name", look), glances.get("name", look)] == [1, 1]
+    assert glances.get("versions", lambda: "others") == "others"
     now[0] = 1.5 * FRESH_S
-    assert glances.of("name", look) == 2
+    assert glances.get("name", look) == 2
     glances.forget()
-    assert glances.of("name", look) == 3
+    assert glances.get("name", look) == 3
 
 
 def test_what_cannot_be_read_is_tried_again() -> None:
     glances = Glances()
     with pytest.raises(OSError):
-        glances.of("name", Path("/nowhere/at/all").stat)
-    assert glances.of("name", lambda: "there") == "there"
+        glances.get("name", Path("/nowhere/at/all").stat)
+    assert glances.get("name", lambda: "there") == "there"

@@ -53,7 +53,7 @@ def test_a_move_says_that_the_view_leaves_the_photo_and_a_look_through_it_says_t
 
 
 def test_a_picture_of_the_view_has_its_place_and_its_height_of_view(camera) -> None:
-    picture = camera.for_picture(300, 200)
+    picture = camera.to_picture_camera(300, 200)
     np.testing.assert_allclose(picture.position, camera.position)
     np.testing.assert_allclose(picture.T_world_camera[:3, :3], FACING_NORTH, atol=1e-12)
     assert picture.intrinsics.vertical_fov_rad == pytest.approx(camera.fov_rad)

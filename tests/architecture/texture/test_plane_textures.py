@@ -104,7 +104,7 @@ def test_what_a_filler_painted_is_taken_for_floor_where_it_looks_like_it(shot, c
     planes = coloured(shot.planes, shot.inputs.photo.rgb, CAMERA, shot.objects)
     floor = next(p for p in planes if p.id == "floor")
     view = PhotoView(RoomPicture(shot.inputs.photo.rgb, shot.objects, CAMERA, filler=_Painter(colour)))
-    found = view.of_plane(floor, planes, *texel_points(floor))
+    found = view.plane_view(floor, planes, *texel_points(floor))
     share = (found.own & (np.abs(found.colours - colour).max(axis=-1) < 5)).mean()
     assert share > 0.02 if accepted else share == 0
 
@@ -122,7 +122,7 @@ def test_the_nearest_texels_are_sharp(shot):
     floor = next(p for p in shot.planes if p.id == "floor")
     points, pixel_m = texel_points(floor)
     view = PhotoView(RoomPicture(shot.inputs.photo.rgb, shot.objects, CAMERA))
-    found = view.of_plane(floor, shot.planes, points, pixel_m)
+    found = view.plane_view(floor, shot.planes, points, pixel_m)
     away = np.linalg.norm(points - CAMERA.position, axis=-1)
     assert 0.1 * found.own.sum() < found.sharp.sum() < found.own.sum()
     assert away[found.sharp].mean() < away[found.own & ~found.sharp].min() + 0.5

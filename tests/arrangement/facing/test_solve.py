@@ -16,8 +16,8 @@ WEIGHTS = facing_weights()
 
 
 def total(factors: Factors, weights: FacingWeights, headings: tuple[int, ...]) -> float:
-    ones = sum(weights.of(name) * float(values[headings[i]]) for name, i, values in factors.ones)
-    return ones + sum(weights.of(name) * float(t[headings[i], headings[j]]) for name, i, j, t in factors.pairs)
+    ones = sum(weights.weight_of(name) * float(values[headings[i]]) for name, i, values in factors.ones)
+    return ones + sum(weights.weight_of(name) * float(t[headings[i], headings[j]]) for name, i, j, t in factors.pairs)
 
 
 def unsure(seed: int) -> np.ndarray:

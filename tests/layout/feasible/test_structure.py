@@ -26,7 +26,7 @@ def test_contact_faces_are_on_their_supports_and_within_them(room: Room):
     for i in range(problem.count):
         place, j = found.surface[i], int(problem.parent[i])
         assert place is not None
-        world = place if j < 0 else place.at(found.R[j], found.p[j], found.scale[j])
+        world = place if j < 0 else place.transform(found.R[j], found.p[j], found.scale[j])
         foot = found.p[i] + found.R[i] @ (problem.contact[i] * problem.shape_size[i] * found.scale[i] / 2)
         assert float(world.normal @ foot) == pytest.approx(world.level, abs=1e-9)
         assert (world.outward @ foot <= world.offset).all()

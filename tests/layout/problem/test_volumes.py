@@ -31,13 +31,13 @@ def test_batched_volumes_equal_the_surfaces_one_by_one(problem: Problem, rng: np
     volumes = Volumes.of(problem)
     R = np.array([rotation_from_vector(v) for v in rng.normal(0, 1, (problem.count, 3))])
     p, scale = rng.normal(0, 1, (problem.count, 3)), rng.uniform(0.5, 2.0, (problem.count, 3))
-    found = volumes.at(R, p, scale)
+    found = volumes.world_volumes(R, p, scale)
     assert volumes.supported.tolist() == [i for i, s in enumerate(problem.surface) if s is not None]
     assert (volumes.supporter >= 0).sum() == 2
     for row, i in enumerate(volumes.supported):
         j = int(problem.parent[i])
         surface = problem.surface[i]
-        one = surface if j < 0 else surface.in_world(Pose(R[j], p[j], scale[j]))
+        one = surface if j < 0 else surface.to_world(Pose(R[j], p[j], scale[j]))
         k = len(one.offset)
         np.testing.assert_allclose(found.outward[row, :k], one.outward, atol=1e-12)
         np.testing.assert_allclose(found.offset[row, :k], one.offset, atol=1e-12)
@@ -60,7 +60,7 @@ def test_contact_templates_are_the_corners_of_the_touching_face(problem: Problem
 def test_a_scene_without_supports_has_no_volumes(room: Room) -> None:
     empty = Volumes.of(build_problem(room.scene(), room.library))
     assert len(empty.supported) == 0
-    assert len(empty.at(np.zeros((0, 3, 3)), np.zeros((0, 3)), np.zeros((0, 3))).level) == 0
+    assert len(empty.world_volumes(np.zeros((0, 3, 3)), np.zeros((0, 3)), np.zeros((0, 3))).level) == 0
 
 
 def allowed(room: Room, first: str, second: str) -> np.ndarray:
@@ -92,7 +92,7 @@ def test_a_part_that_covers_the_middle_of_a_place_encloses_nothing(room: Room) -
     problem = build_problem(room.scene(), room.library)
     bodies = place_bodies(problem.packed, problem.R, problem.p, problem.scale)
     k, below = problem.ids.index(cup), problem.ids.index(table)
-    place = problem.surface[k].at(problem.R[below], problem.p[below], problem.scale[below])
+    place = problem.surface[k].transform(problem.R[below], problem.p[below], problem.scale[below])
     lower = replace(place, level=place.level - 0.02, polygon=place.polygon - 0.02 * place.normal)
     surfaces = [lower if i == k else s for i, s in enumerate(problem.surface)]
     assert not may_meet(problem, bodies, surfaces)[np.ix_(bodies.owner == k, bodies.owner == below)].any()

@@ -77,7 +77,7 @@ def test_the_placement_cost_of_the_inner_loop_is_e_place() -> None:
     point = base + torch.tensor(np.einsum("eij,ej->ei", owner_R, edges.point * owner_s))
     normal = torch.tensor(np.einsum("eij,ej->ei", owner_R, edges.normal))
     value = costs.e_place(centre, point, normal)
-    ours, slope = staged.PlacementCost.of(problem, state).of_positions(state.p)
+    ours, slope = staged.PlacementCost.of(problem, state).value_and_gradient(state.p)
     assert ours == pytest.approx(float(value.detach()))
     assert np.allclose(slope, torch.autograd.grad(value, p)[0].numpy())
 

@@ -34,7 +34,7 @@ def of(
     surface, parent = problem.surface[i], int(problem.parent[i])
     assert surface is not None
     if parent >= 0:
-        surface = surface.at(problem.R[parent], problem.p[parent], problem.scale[parent])
+        surface = surface.transform(problem.R[parent], problem.p[parent], problem.scale[parent])
     return freedom(problem, i, surface, sized=sized, is_round=is_round), problem, i
 
 

@@ -25,7 +25,7 @@ def seen(shot: Shot = SHOT, depth: bool = True):
 def test_what_is_seen_below_an_object_carries_it(depth: bool) -> None:
     found = seen(depth=depth)
     assert found["lamp"].below.get("table", 0.0) > 0.9
-    assert found["lamp"].below_objects > 0.9
+    assert found["lamp"].rim_share_on_objects > 0.9
     assert found["table"].below.get("floor", 0.0) > 0.4
     assert found["table"].hidden_below < 0.3
 

@@ -34,13 +34,13 @@ def readings(of: RequestedObject, *larger: float) -> Cuboids:
 
 
 def test_the_reading_costs_least_on_which_the_load_has_its_usual_size() -> None:
-    costs = CarriedCosts(observed(TABLE, KEYBOARD), VIEW, HEIGHT_M).of({0: readings(TABLE, 0.5, 1.0, 2.2)})[0]
+    costs = CarriedCosts(observed(TABLE, KEYBOARD), VIEW, HEIGHT_M).costs({0: readings(TABLE, 0.5, 1.0, 2.2)})[0]
     assert costs[1] < costs[0] - 1.0
     assert costs[1] < costs[2] - 1.0
 
 
 def test_one_reading_and_what_carries_nothing_cost_nothing() -> None:
-    found = CarriedCosts(observed(TABLE, KEYBOARD, SOFA), VIEW, HEIGHT_M).of(
+    found = CarriedCosts(observed(TABLE, KEYBOARD, SOFA), VIEW, HEIGHT_M).costs(
         {0: readings(TABLE, 1.0), 2: readings(SOFA, 0.9, 1.1)}
     )
     assert found[0].tolist() == [0.0]
@@ -49,7 +49,7 @@ def test_one_reading_and_what_carries_nothing_cost_nothing() -> None:
 
 def test_only_new_readings_are_solved_and_alike_with_others_and_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     observations = observed(TABLE, KEYBOARD)
-    whole = CarriedCosts(observations, VIEW, HEIGHT_M).of({0: readings(TABLE, 0.8, 1.0, 1.3)})[0]
+    whole = CarriedCosts(observations, VIEW, HEIGHT_M).costs({0: readings(TABLE, 0.8, 1.0, 1.3)})[0]
     solved: list[int] = []
 
     def counted(rows, view, settings):
@@ -59,9 +59,9 @@ def test_only_new_readings_are_solved_and_alike_with_others_and_alone(monkeypatc
     original = mutual_costs.solve_all
     monkeypatch.setattr(mutual_costs, "solve_all", counted)
     costs = CarriedCosts(observations, VIEW, HEIGHT_M)
-    first = costs.of({0: readings(TABLE, 0.8, 1.0)})[0]
-    again = costs.of({0: readings(TABLE, 1.0, 1.3, 0.8)})[0]
-    assert costs.of({0: readings(TABLE, 0.8, 1.0)})[0].tolist() == first.tolist()
+    first = costs.costs({0: readings(TABLE, 0.8, 1.0)})[0]
+    again = costs.costs({0: readings(TABLE, 1.0, 1.3, 0.8)})[0]
+    assert costs.costs({0: readings(TABLE, 0.8, 1.0)})[0].tolist() == first.tolist()
     assert len(solved) == 2
     assert solved[1] * 2 == solved[0]
     np.testing.assert_allclose(first, whole[:2], atol=1e-6)

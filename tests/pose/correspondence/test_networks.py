@@ -90,12 +90,12 @@ def test_the_scale_network_says_how_large_and_how_far_turned() -> None:
         room.inputs.photo.rgb, item.mask, item.box, depth.depth_m, depth.normals_world, room.camera, GRID
     )
     compared = stage.compare(crop, [LIBRARY.shape("chair")])[0]
-    view = int(compared.by_belief[0])
+    view = int(compared.ranked_views[0])
     one, double = (from_one_match(compared, view, _Turner(s, 0.0)) for s in (1.0, 2.0))
     turned = from_one_match(compared, view, _Turner(1.0, 0.5))
     assert double.scale == pytest.approx(2 * one.scale)
     assert np.arccos((np.trace(turned.R.T @ one.R) - 1) / 2) == pytest.approx(0.5)
     # Beside RANSAC it is taken only where more matches agree with it.
-    plain = from_matches(compared, compared.by_belief[:5])
-    absurd = from_matches(compared, compared.by_belief[:5], _Turner(40.0, 2.0))
+    plain = from_matches(compared, compared.ranked_views[:5])
+    absurd = from_matches(compared, compared.ranked_views[:5], _Turner(40.0, 2.0))
     assert absurd.scale == pytest.approx(plain.scale)

@@ -108,7 +108,7 @@ def _categories(document: Mapping[str, Any]) -> dict[int, str]:
 
 def _categories_beside(text: BoxText) -> dict[int, str]:
     """The names of a data set's file beside the results."""
-    for file in text.source.beside("*.json"):
+    for file in text.source.sibling_files("*.json"):
         if b'"categories"' not in file.data or len(file.data) > MAX_CATEGORY_BYTES:
             continue
         try:

@@ -184,7 +184,7 @@ def _number(word: str) -> float | None:
 
 def _class_names(source: Source) -> dict[int, str]:
     """Names of class numbers: a line each, or the `names` of a YAML file."""
-    for file in source.beside(*_NAME_FILES):
+    for file in source.sibling_files(*_NAME_FILES):
         content = file.data[:200_000].decode("utf-8", "replace")
         names = _yaml_names(content) if file.suffix in (".yaml", ".yml") else dict(enumerate(content.split("\n")))
         names = {k: v.strip()[:200] for k, v in names.items() if v.strip()}

@@ -55,9 +55,9 @@ def _confidence_files(source: Source) -> tuple[Source, ...]:
     named = [f"{stem}{joint}conf*.*" for joint in "_.-"]
     if "depth" in stem.lower():
         named += [f"{part}.*" for word in ("confidence", "conf") if (part := _replaced(stem, word)) != stem]
-    files = source.beside(*named)
+    files = source.sibling_files(*named)
     if not files and source.path is not None and source.path.parent.name.lower().startswith("depth"):
-        files = Source(b"", "", source.path.parent).beside(f"confidence/{name}", f"confidence_map/{name}")
+        files = Source(b"", "", source.path.parent).sibling_files(f"confidence/{name}", f"confidence_map/{name}")
     return files
 
 

@@ -187,7 +187,7 @@ def _reading(
 
 def _to_map_unit(reading: DepthReading, scale: float) -> DepthReading:
     """The reading in the map's own unit."""
-    function, one = reading.function.of_larger(scale), np.ones(1)
+    function, one = reading.function.scaled(scale), np.ones(1)
     factor = float(function.inverse_depth(scale * one)[0] / reading.function.inverse_depth(one)[0])
     fit = PlaneFit(reading.fit.explained, reading.fit.planes * factor, reading.fit.shares)
     return replace(reading, fit=fit, function=function)

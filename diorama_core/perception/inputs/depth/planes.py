@@ -40,7 +40,7 @@ class DepthFunction:
             numbers = positive ** (-1.0 / self.power) - self.offset
         return np.where(inverse > 0, numbers, np.inf)
 
-    def of_larger(self, factor: float) -> DepthFunction:
+    def scaled(self, factor: float) -> DepthFunction:
         """The function of numbers that are so many times as large."""
         rate = None if self.rate is None else self.rate / factor
         return DepthFunction(self.power, self.offset * factor, rate)
