@@ -182,11 +182,11 @@ def _fit_walls_to_backs(scene: Scene, feet_seen: Collection[str] | None, objects
 def _without_far_adherence(scene: Scene) -> Scene:
     """The scene without "against the wall" where an object was measured away from a wall that the photo shows."""
 
-    def near_walls(edge: Support) -> tuple[str, ...]:
+    def touched_walls(edge: Support) -> tuple[str, ...]:
         item = scene.object(edge.child)
         return tuple(w for w in edge.adheres_to if abs(_back(item, scene.plane(w))) < SETTINGS.clearly_m)
 
-    return replace(scene, supports=tuple(replace(s, adheres_to=near_walls(s)) for s in scene.supports))
+    return replace(scene, supports=tuple(replace(s, adheres_to=touched_walls(s)) for s in scene.supports))
 
 
 def _backs(

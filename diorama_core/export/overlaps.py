@@ -76,7 +76,7 @@ class Cuts:
 
     def resolve(self) -> None:
         """Cut every pair that overlaps; what is too deep to be cut level loses what both fill."""
-        first, second = self._near_pairs()
+        first, second = self._candidate_pairs()
         if len(first) == 0:
             return
         near, place = np.unique(np.concatenate([first, second]), return_inverse=True)
@@ -90,7 +90,7 @@ class Cuts:
         for pair in self._deep:
             self._hollow_out(*pair)
 
-    def _near_pairs(self) -> tuple[np.ndarray, np.ndarray]:
+    def _candidate_pairs(self) -> tuple[np.ndarray, np.ndarray]:
         """Parts whose boxes overlap and of which at least one can move against the other: those of different objects,
         and those of an object that its joints move."""
         low = np.array([w.min(axis=0) for w in self._world]).reshape(-1, 3)

@@ -134,7 +134,7 @@ def incidence(pairs: Int[Array, "m 2"], count: int) -> Float[Array, "n m"]:
     return matrix
 
 
-def near_pairs(
+def candidate_pairs(
     R: Float[Array, "n 3 3"], p: Float[Array, "n 3"], size: Float[Array, "n 3"], apart: Bool[Array, "n n"], gap_m: float
 ) -> Int[Array, "m 2"]:
     """Pairs of boxes that may collide (`apart`) and whose bounds are nearer than `gap_m`.

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 
 from diorama_core.geometry.sat import pair_axes, place_bodies
 from diorama_core.layout import gradients
-from diorama_core.layout.gradients import BoxPairs, near_pairs
+from diorama_core.layout.gradients import BoxPairs, candidate_pairs
 from diorama_core.layout.problem.problem import Problem, build_problem, reach_of
 from diorama_core.layout.problem.volumes import Volumes, contact_templates
 from diorama_core.library.record import ShapeLibrary
@@ -105,7 +105,7 @@ def cost_values(
     inward = -np.matmul(R[supported], problem.contact[supported][..., None])[..., 0]
     centre = corners.mean(axis=1)
     foot = centre - ((centre * here.normal).sum(axis=1) - here.level)[:, None] * here.normal
-    pairs = near_pairs(R, p, size, ~problem.kin, 0.0)
+    pairs = candidate_pairs(R, p, size, ~problem.kin, 0.0)
     boxes = BoxPairs.of(R, size, pairs, walls_from=problem.count)
     links = gradients.incidence(problem.relations, problem.count)
     return {
@@ -160,7 +160,7 @@ def support_errors(
 def _box_overlap(problem: Problem, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> float:
     """Overlap depth of bounding boxes, summed over the pairs that should be apart, per object."""
     size = problem.shape_size * scale
-    pairs = near_pairs(R, p, size, ~problem.kin, 0.0)
+    pairs = candidate_pairs(R, p, size, ~problem.kin, 0.0)
     if not len(pairs):
         return 0.0
     boxes = BoxPairs.of(R, size, pairs, walls_from=problem.count)

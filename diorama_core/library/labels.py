@@ -4,7 +4,7 @@ The shares are rough frequencies in photos of homes and offices; what a photo sh
 
 "a wooden coffee table with a glass top", "chair_2", "Statue (sculpture)" and "arm chair" name a coffee table, a chair,
 a statue and an armchair: what follows "with" or "on" and what brackets hold describes, the last words before it name.
-Where none is known the nearest in form is taken (`naming.near_names`), then the nearest spelling.
+Where none is known the nearest in form is taken (`naming.other_names`), then the nearest spelling.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from functools import cache
 
 from diorama_core.library import taxonomy
 from diorama_core.library.language import JOINTS, broader, narrower, size_request, tokens
-from diorama_core.library.naming import near_names
+from diorama_core.library.naming import other_names
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, Resolution, category, column, resolve
 
 MEANINGS: Mapping[str, Mapping[str, float]] = {
@@ -131,7 +131,7 @@ def _category_of(word: str) -> taxonomy.Category:
 
 def _found(label: str) -> tuple[str, bool] | None:
     """The plain word, and whether it says the same rather than the nearest thing in form."""
-    exact, near = _names(), near_names()
+    exact, near = _names(), other_names()
     run = next((run for run in _runs(label) if run in exact or run in near), None)
     return None if run is None else (exact.get(run) or near[run], run in exact)
 

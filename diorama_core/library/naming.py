@@ -16,7 +16,7 @@ from diorama_core.library.taxonomy import column
 
 
 @cache
-def near_names() -> dict[tuple[str, ...], str]:
+def other_names() -> dict[tuple[str, ...], str]:
     """Normal words of each name (`language.tokens`), and the category it is near to."""
     table: dict[tuple[str, ...], str] = {}
     for category, names in column("other_names").items():
@@ -136,7 +136,7 @@ def _nearest(words: Sequence[str], size: Size | None) -> _Near | None:
     head = _head(words) or [w for w in words if w not in IGNORED and w not in JOINTS]
     if not head:
         return None
-    table, near = _names(), near_names()
+    table, near = _names(), other_names()
     for run in sorted(_runs(head, len(head)), key=lambda run: (-len(run), run != tuple(head[-len(run) :]))):
         if run in near:
             return _Near(near[run], run, f"'{' '.join(run)}' is no class of its own; the nearest is '{near[run]}'")

@@ -45,8 +45,9 @@ def simplified_glb(data: bytes, max_triangles: int) -> bytes:
         triangles = _array(document, binary, part["indices"]).ravel().astype(np.uint32)
         arrays = {name: _array(document, binary, k) for name, k in part["attributes"].items()}
         fewer = simplified_triangles(triangles, arrays["POSITION"], max_triangles / total)
-        fewer = _optimise_cache_order(fewer, len(arrays["POSITION"]))
-        used, renumbered = np.unique(fewer, return_inverse=True)
+        ordered = np.empty_like(fewer)
+        meshoptimizer.optimize_vertex_cache(ordered, fewer, len(fewer), len(arrays["POSITION"]))
+        used, renumbered = np.unique(ordered, return_inverse=True)
         part["attributes"] = {name: written.vertices(name, array[used]) for name, array in arrays.items()}
         part["indices"] = written.indices(renumbered.astype(np.uint32))
     for image in document.get("images", ()):
@@ -117,12 +118,6 @@ def _pieces(triangles: np.ndarray, points: np.ndarray) -> list[np.ndarray]:
 def _area(triangles: np.ndarray, points: np.ndarray) -> float:
     a, b, c = (points[triangles.reshape(-1, 3)[:, k]].astype(np.float64) for k in range(3))
     return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
-
-
-def _optimise_cache_order(triangles: np.ndarray, vertex_count: int) -> np.ndarray:
-    ordered = np.empty_like(triangles)
-    meshoptimizer.optimize_vertex_cache(ordered, triangles, len(triangles), vertex_count)
-    return ordered
 
 
 class _Writer:

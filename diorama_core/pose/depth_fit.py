@@ -120,7 +120,8 @@ class SeenOutline:
         x1, y1, x2, y2 = seen.box
         beyond = tips + directions * max(0.06 * max(x2 - x1, y2 - y1), 2.0)
         cells = _nearest_cells(seen, beyond)
-        known = (seen.weight[cells] > 0.6) & _are_inside(beyond, mask.shape)
+        is_inside = ((beyond >= 1) & (beyond < np.array(mask.shape[::-1]) - 1)).all(axis=1)
+        known = (seen.weight[cells] > 0.6) & is_inside
         return cls(directions, reach, known, settings)
 
 
@@ -130,11 +131,6 @@ def _nearest_cells(seen: Observed, pixels: Float[np.ndarray, "k 2"]) -> np.ndarr
     column = np.clip(((pixels[:, 0] - x1) / (x2 - x1) * n).astype(int), 0, n - 1)
     row = np.clip(((pixels[:, 1] - y1) / (y2 - y1) * n).astype(int), 0, n - 1)
     return row * n + column
-
-
-def _are_inside(pixels: Float[np.ndarray, "k 2"], shape: tuple[int, ...]) -> Bool[np.ndarray, " k"]:
-    x, y = pixels.T
-    return (x >= 1) & (y >= 1) & (x < shape[1] - 1) & (y < shape[0] - 1)
 
 
 @dataclass(frozen=True, eq=False)

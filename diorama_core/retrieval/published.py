@@ -24,7 +24,7 @@ from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.retrieval.appearance_similarity import AppearanceSimilarity, EmbeddedSimilarity, ObjectCrop
 from diorama_core.retrieval.joint import PROMPT, JointEmbedding, shape_vectors
-from diorama_core.retrieval.pools import near_kinds
+from diorama_core.retrieval.pools import related_kinds
 
 By = Literal["words", "picture", "words and picture"]
 
@@ -107,14 +107,11 @@ class MatchedByLooks:
             if item.id not in placed:
                 continue
             progress.report(index / len(objects), f"Looking for shapes: {item.label}")
-            shapes = self._kind_shapes(item.category)
+            shapes = list(self.library.in_category(item.category))
+            related = related_kinds(item.category)[: self.kinds] if not shapes else ()
+            shapes += [s for kind in related for s in self.library.in_category(kind)]
             crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, 1.0, 1.0)
             alike = similarity.similarities(crop, shapes)
             order = sorted(range(len(shapes)), key=lambda k: (-alike[k], shapes[k].id))[: self.shapes]
             rankings.append(RankedShapes(item.id, tuple((shapes[k].id, float(alike[k])) for k in order)))
         return tuple(rankings)
-
-    def _kind_shapes(self, name: str) -> list[Shape]:
-        """Shapes of the category; of its nearest kinds where the library has none of itself."""
-        shapes = list(self.library.in_category(name))
-        return shapes or [s for kind in near_kinds(name)[: self.kinds] for s in self.library.in_category(kind)]

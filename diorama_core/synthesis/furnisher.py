@@ -11,7 +11,7 @@ from jaxtyping import Float
 from diorama_core.editing.room_frame import WallLine
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.library.record import Shape, ShapeLibrary, SupportSurface
-from diorama_core.scene.types import Pose, SceneObject, Support
+from diorama_core.scene.types import Pose, SceneObject, Support, box_corners
 from diorama_core.synthesis.bodies import Item, PlacedBodies, heights_below
 from diorama_core.synthesis.plan import RoomPlan, footprint, quads_overlap
 
@@ -328,9 +328,7 @@ class Furnisher:
         return Pose.upright([xy[0], xy[1], base_m + item.size_m[2] / 2], yaw_rad, item.scale)
 
     def _fits_under_roof(self, item: Item, pose: Pose) -> bool:
-        half = item.size_m / 2
-        signs = np.array([[(k >> axis & 1) * 2.0 - 1.0 for axis in range(3)] for k in range(8)])
-        return self.plan.fits_under_roof((signs * half) @ pose.R_world_object.T + pose.position)
+        return self.plan.fits_under_roof(box_corners(item.size_m) @ pose.R_world_object.T + pose.position)
 
     def _front(self, item: Item, xy: np.ndarray, yaw_rad: float, free_m: float) -> Float[np.ndarray, "4 2"]:
         ahead = np.array([np.cos(yaw_rad), np.sin(yaw_rad)]) * (item.size_m[0] + free_m) / 2

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from diorama_core.library import taxonomy
 from diorama_core.library.language import narrower, normal, size_in, tokens
-from diorama_core.library.naming import near_names, size_distance, understand
+from diorama_core.library.naming import other_names, size_distance, understand
 
 
 @pytest.mark.parametrize(
@@ -98,9 +98,9 @@ def test_concepts_know_their_kinds() -> None:
 
 def test_near_names_lead_to_categories_and_are_no_names_of_categories() -> None:
     names = {c.name for c in taxonomy.CATEGORIES}
-    assert set(near_names().values()) <= names
+    assert set(other_names().values()) <= names
     shadowed = {tokens(s): c.name for c in taxonomy.CATEGORIES for s in (c.name, *c.synonyms)}
-    for words, category in near_names().items():
+    for words, category in other_names().items():
         if words in shadowed and words not in {("ottoman", "box")}:
             assert understand(" ".join(words)).categories == (shadowed[words],), f"{words} is listed near {category}"
 

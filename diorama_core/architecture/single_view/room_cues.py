@@ -109,7 +109,7 @@ def gather_room_cues(
     middle = 0.5 * (segments[:, :2] + segments[:, 2:])
     directions, ray_axes, weights = _surface_rays(segments[free], axes[free], camera)
     hung = {o.id for o in objects if category(o.category).mount == "ceiling"}
-    solid = [c for c in cuboids if not _is_on_wall(c, objects)]
+    solid = [c for c in cuboids if _category_of(c, objects) not in _WALL_CATEGORIES]
     corners = np.array([c.corners_world for c in solid]).reshape(-1, 8, 3)
     backed = [c for c in cuboids if _category_of(c, objects) in BACKED]
     backs = np.array([c.corners_world for c in backed]).reshape(-1, 8, 3)
@@ -169,10 +169,6 @@ def _slants(
         settings.slant_share * everything, settings.slant_diagonals * float(np.hypot(k.width, k.height))
     )
     return [best] if enough else []
-
-
-def _is_on_wall(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:
-    return _category_of(cuboid, objects) in _WALL_CATEGORIES
 
 
 def _is_portable(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:

@@ -237,7 +237,8 @@ def _beyond_view(
     """Where the first or last wall ends: behind the camera, a little outside the picture, or where it was last seen."""
     outward = -run.wall.direction if left else run.wall.direction
     if outward[1] < -0.7:
-        return _wall_point_at_y(run.wall, origin[1] - settings.behind_camera_m)
+        y = origin[1] - settings.behind_camera_m
+        return np.array([(run.wall.offset - run.wall.normal[1] * y) / run.wall.normal[0], y])
     seen = run.first if left else run.last
     at_side = point_at(run.wall, side, origin, settings)
     if at_side is None or np.linalg.norm(at_side - origin) > 2.5 * _range(run, origin, settings):
@@ -247,11 +248,6 @@ def _beyond_view(
         away = float(np.linalg.norm(nearest - origin))
         at_side = nearest + np.sqrt(max(settings.max_range_m**2 - away**2, 0.0)) * outward
     return at_side + settings.beyond_view_m * outward
-
-
-def _wall_point_at_y(wall: WallCandidate, y: float) -> Float[np.ndarray, "2"]:
-    """Point at a given y on a wall that runs about along y."""
-    return np.array([(wall.offset - wall.normal[1] * y) / wall.normal[0], y])
 
 
 def _range(run: Run, origin: Float[np.ndarray, "2"], settings: WallSettings) -> float:

@@ -244,13 +244,13 @@ def _touching(
 
 def _watch(program: Program, w: Float[np.ndarray, "n 3"]) -> None:
     """Learn the axes of part pairs that have come near each other."""
-    fresh = np.array([p for p in _near_parts(program, w) if p not in program.watched], dtype=int).reshape(-1, 2)
+    fresh = np.array([p for p in _candidate_pairs(program, w) if p not in program.watched], dtype=int).reshape(-1, 2)
     if len(fresh):
         program.watched.update({(int(a), int(b)): len(program.watched) for a, b in fresh})
         program.blocks.extend(pair_axes(program.bodies, fresh[:, 0], fresh[:, 1]))
 
 
-def _near_parts(program: Program, w: Float[np.ndarray, "n 3"]) -> list[tuple[int, int]]:
+def _candidate_pairs(program: Program, w: Float[np.ndarray, "n 3"]) -> list[tuple[int, int]]:
     bodies, problem = program.bodies, program.problem
     reach = problem.settings.watched_m / 2
     low, high = bodies.low + w[bodies.owner] - reach, bodies.high + w[bodies.owner] + reach

@@ -12,7 +12,7 @@ import torch
 
 from diorama_core.artefacts import LayoutReport
 from diorama_core.geometry.rotations import rotation_from_vector
-from diorama_core.layout.gradients import near_pairs
+from diorama_core.layout.gradients import candidate_pairs
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.problem.volumes import Volumes, contact_templates
 from diorama_core.layout.published import costs, staged
@@ -224,7 +224,7 @@ class _Terms:
 
     def _overlap(self, p: torch.Tensor, state: State) -> torch.Tensor:
         R, centre, size, apart = staged.with_walls(self.problem, state)
-        pairs = near_pairs(R, centre, size, apart, 0.0)
+        pairs = candidate_pairs(R, centre, size, apart, 0.0)
         if not len(pairs):
             return torch.zeros((), dtype=torch.float64)
         everywhere = torch.cat([p, torch.tensor(centre[self.problem.count :])])

@@ -236,7 +236,7 @@ def refinement_stage(
         centre[:n] = state.p
         # Pairs further apart than near_m cannot touch before something has moved by half of that.
         if step % 10 == 0 and np.abs(state.p - seen).max(initial=0.0) > near_m / 4:
-            pairs = gradients.near_pairs(R, centre, size, apart, near_m)
+            pairs = gradients.candidate_pairs(R, centre, size, apart, near_m)
             boxes, links = gradients.BoxPairs.of(R, size, pairs, walls_from=n), gradients.incidence(pairs, len(centre))
             seen = state.p.copy()
         value, gradient = cost.value_and_gradient(state.p)
