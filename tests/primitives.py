@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import trimesh
@@ -75,45 +76,51 @@ def _print() -> trimesh.Scene:
     return trimesh.Scene({"back": back, "front": _painted(front, look, uv)})
 
 
+def _build(shape_id: str) -> trimesh.Scene:
+    builders = {"table": _table, "chair": _chair, "ball": _ball, "print": _print}
+    if shape_id not in builders:
+        raise LibraryError(f"there is no shape {shape_id!r} in the library")
+    return builders[shape_id]()
+
+
+@cache
+def _shape(shape_id: str) -> Shape:
+    extents = _build(shape_id).extents
+    category = {"ball": "toy", "print": "picture"}.get(shape_id, shape_id)
+    top = 0.36 if shape_id == "table" else float(extents[2] / 2)
+    x, y = extents[0] / 2, extents[1] / 2
+    corners = [[-x, -y, top], [x, -y, top], [x, y, top], [-x, y, top]]
+    return Shape(
+        id=shape_id,
+        category=category,
+        caption=f"plain {shape_id}",
+        size_m=tuple(float(e) for e in extents),
+        surfaces=(SupportSurface(np.array(corners), float("inf"), interior=False),),
+        content_hash=hashlib.sha256(shape_id.encode()).hexdigest(),
+    )
+
+
 @dataclass(frozen=True)
 class PrimitiveLibrary:
     """table, chair, ball and print, built from boxes and spheres."""
-
-    def _build(self, shape_id: str) -> trimesh.Scene:
-        builders = {"table": _table, "chair": _chair, "ball": _ball, "print": _print}
-        if shape_id not in builders:
-            raise LibraryError(f"there is no shape {shape_id!r} in the library")
-        return builders[shape_id]()
 
     def shapes(self) -> tuple[Shape, ...]:
         return tuple(self.shape(s) for s in ("table", "chair", "ball", "print"))
 
     def shape(self, shape_id: str) -> Shape:
-        extents = self._build(shape_id).extents
-        category = {"ball": "toy", "print": "picture"}.get(shape_id, shape_id)
-        top = 0.36 if shape_id == "table" else float(extents[2] / 2)
-        x, y = extents[0] / 2, extents[1] / 2
-        corners = [[-x, -y, top], [x, -y, top], [x, y, top], [-x, y, top]]
-        return Shape(
-            id=shape_id,
-            category=category,
-            caption=f"plain {shape_id}",
-            size_m=tuple(float(e) for e in extents),
-            surfaces=(SupportSurface(np.array(corners), float("inf"), interior=False),),
-            content_hash=hashlib.sha256(shape_id.encode()).hexdigest(),
-        )
+        return _shape(shape_id)
 
     def in_category(self, category: str) -> tuple[Shape, ...]:
         return tuple(s for s in self.shapes() if s.category == category)
 
     def mesh(self, shape_id: str) -> trimesh.Trimesh:
-        return self._build(shape_id).to_geometry()
+        return _build(shape_id).to_geometry()
 
     def parts(self, shape_id: str) -> trimesh.Scene:
-        return self._build(shape_id)
+        return _build(shape_id)
 
     def glb(self, shape_id: str) -> bytes:
-        return self._build(shape_id).export(file_type="glb")
+        return _build(shape_id).export(file_type="glb")
 
 
 def place(library: PrimitiveLibrary, object_id: str, shape_id: str, position: tuple[float, float, float], **more):

@@ -33,20 +33,27 @@ def footprint_of(item: SceneObject) -> Quad:
 
 def overlapping(quads: Quads, other: Outline, slack_m: float = 1e-4) -> Bool[np.ndarray, "n"]:
     """Which outlines share more than `slack_m` in every direction with another (separating axes)."""
-    apart = np.zeros(len(quads), dtype=bool)
     axes = _normals(other)
-    theirs, ours = other @ axes.T, quads @ axes.T
-    apart |= (
-        (ours.max(axis=1) <= theirs.min(axis=0) + slack_m) | (theirs.max(axis=0) <= ours.min(axis=1) + slack_m)
-    ).any(axis=1)
-    edges = quads[:, 1:3] - quads[:, 0:2]
+    near = np.flatnonzero(~_are_apart(quads @ axes.T, (other @ axes.T)[None], slack_m))
+    edges = quads[near, 1:3] - quads[near, 0:2]
     normals = np.stack([edges[..., 1], -edges[..., 0]], axis=-1)
     normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
-    ours, theirs = np.einsum("nkd,nad->nak", quads, normals), np.einsum("kd,nad->nak", other, normals)
-    apart |= (
-        (ours.max(axis=2) <= theirs.min(axis=2) + slack_m) | (theirs.max(axis=2) <= ours.min(axis=2) + slack_m)
-    ).any(axis=1)
-    return ~apart
+    ours, theirs = np.einsum("nkd,nad->nka", quads[near], normals), np.einsum("kd,nad->nka", other, normals)
+    overlap = np.zeros(len(quads), dtype=bool)
+    overlap[near] = ~_are_apart(ours, theirs, slack_m)
+    return overlap
+
+
+def _are_apart(
+    ours: Float[np.ndarray, "n k a"], theirs: Float[np.ndarray, "#n m a"], slack_m: float
+) -> Bool[np.ndarray, "n"]:
+    """Which corners, projected on axes, share at most the slack with others along one of them. The outlines come last
+    in memory, where numpy is several times as fast.
+    """
+    a, b = (np.ascontiguousarray(corners.transpose(1, 2, 0)) for corners in (ours, theirs))
+    return np.asarray(
+        ((a.max(axis=0) <= b.min(axis=0) + slack_m) | (b.max(axis=0) <= a.min(axis=0) + slack_m)).any(axis=0)
+    )
 
 
 def gaps(quads: Quads, other: Outline) -> Float[np.ndarray, "n"]:
@@ -94,8 +101,7 @@ def _to_edges(a: Float[np.ndarray, "n p 2"], b: Float[np.ndarray, "n k 2"]) -> F
 def _points_to_edges(
     points: Float[np.ndarray, "n p 2"], outline: Float[np.ndarray, "n k 2"]
 ) -> Float[np.ndarray, "n p"]:
-    begin, edge = outline, np.roll(outline, -1, axis=1) - outline
-    away = points[:, :, None] - begin[:, None]
-    along = (away * edge[:, None]).sum(-1) / np.maximum((edge**2).sum(-1), 1e-12)[:, None]
-    nearest = away - np.clip(along, 0.0, 1.0)[..., None] * edge[:, None]
-    return np.linalg.norm(nearest, axis=-1).min(axis=2)
+    edge = np.roll(outline, -1, axis=1) - outline
+    (x, y), (ex, ey) = np.moveaxis(points[:, :, None] - outline[:, None], -1, 0), np.moveaxis(edge[:, None], -1, 0)
+    along = np.clip((x * ex + y * ey) / np.maximum(ex**2 + ey**2, 1e-12), 0.0, 1.0)
+    return np.sqrt((x - along * ex) ** 2 + (y - along * ey) ** 2).min(axis=2)
