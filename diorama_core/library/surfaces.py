@@ -22,7 +22,7 @@ from diorama_core.geometry.planes import signed_area
 from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.library.record import SupportSurface
 
-SURFACES_VERSION = 2
+SURFACES_VERSION = 3
 """Raise it when other surfaces are found on the same shape, so that those on disk are measured again."""
 MINIMUM_UP = 0.9
 """Cosine of the steepest slope that still carries objects."""
@@ -87,7 +87,9 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
         outline = _outline(spots, region)
         if len(region) * cell_m**2 < MINIMUM_FILL * abs(signed_area(outline)) or _breadth(outline) < narrowest:
             continue
-        surfaces.append(_surface(spots, region, outline))
+        surface = _surface(spots, region, outline)
+        if not _is_enclosed(surface, caster):
+            surfaces.append(surface)
     surfaces = _joined(surfaces)
     return tuple(sorted(surfaces, key=lambda s: (-round(s.height_m, 3), *np.round(s.polygon.mean(axis=0)[:2], 3))))
 
@@ -244,3 +246,12 @@ def _surface(spots: _Spots, region: Int[np.ndarray, "k"], outline: Float[np.ndar
     interior = bool(np.isfinite(clearance).mean() > 0.5)
     lowest = float(np.percentile(clearance, 10, method="lower")) if interior else float("inf")
     return SupportSurface(polygon, lowest, interior)
+
+
+def _is_enclosed(surface: SupportSurface, caster: RayScene) -> bool:
+    """Whether a surface has a ceiling and walls on all four sides: nobody puts things into a closed cupboard."""
+    if not np.isfinite(surface.clearance_m):
+        return False
+    middle = [*surface.polygon[:, :2].mean(axis=0), surface.height_m + 0.5 * surface.clearance_m]
+    ahead = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
+    return bool(caster.occluded(np.column_stack([np.tile(middle, (4, 1)), ahead]).astype(np.float32)).all())

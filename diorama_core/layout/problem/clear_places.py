@@ -76,7 +76,7 @@ def clear_of_places(
     for place in places:
         rooms = (_room_above(place, rise) for rise in rises)
         free = next((room for room in rooms if not _are_in_room(points, *room).any()), None)
-        if free is not None and not _is_enclosed(free, surface):
+        if free is not None:
             whole, flat = (place[0], place[1], free[2]), _room_above(place, SETTINGS.rises_m[0])
             parts = tuple(piece for p in parts for piece in (_cut(p, whole) if _reaches_over(p, flat) else [p]))
     return parts
@@ -113,19 +113,6 @@ def _are_in_room(
     outward, offset = _sides(outline)
     beside = (points[:, :2] @ outward.T - offset).max(axis=1)
     return np.asarray((beside < -SETTINGS.margin_m) & (points[:, 2] > low) & (points[:, 2] < high))
-
-
-def _is_enclosed(room: Room, mesh: trimesh.Trimesh) -> bool:
-    """Whether a room has a ceiling and walls on all four sides: nobody puts things into a closed cupboard."""
-    outline, low, high = room
-    if not np.isfinite(high):
-        return False
-    middle = np.array([*outline.mean(axis=0), 0.5 * (low + high)])
-    ahead = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
-    from diorama_core.geometry.ray_scene import RayScene  # Open3D; the editor opens without it
-
-    rays = np.column_stack([np.tile(middle, (4, 1)), ahead]).astype(np.float32)
-    return bool(RayScene(np.asarray(mesh.vertices), np.asarray(mesh.faces, np.int32)).first_hits(rays).found.all())
 
 
 def _reaches_over(part: ConvexPart, room: Room) -> bool:
