@@ -17,6 +17,13 @@ ODD_STARTS = re.compile(r"(Of|And|Nor|But|Or|The same)\b")
 QUESTIONS = re.compile(r"(What|How|Where|When)\b")
 MAX_QUESTIONS = 0.12
 """Share of docstrings that begin with a question word; it may only fall."""
+PREPOSITIONS = re.compile(
+    r"def _*(of|in|at|on|by|within|inside|beside|over|outside|near|below|along|between|about|towards?|before|behind"
+    r"|through|around|under|where|above|for|into|onto|after|among)(?=_|\()"
+)
+MAX_PREPOSITIONS = 76
+"""Functions of core and app whose names begin with one, constructors `of` and handlers `on_*` mostly; it may only fall.
+Conversions (`with_`, `without_`, `to_`, `from_`, `as_`) are usual."""
 MANY_PARAMETERS = 4
 EXPLAINED_ELSEWHERE = ("diorama_core/library/furniture/", "diorama_app/agents/tools.py", "diorama_app/http_api/")
 """Designs' parameters are the words of their tables; those of HTTP and MCP have descriptions in their annotations."""
@@ -62,6 +69,11 @@ def test_docstrings_begin_with_their_subject() -> None:
     assert [(path, text) for path, text in docstrings if ODD_STARTS.match(text)] == []
     questions = sum(QUESTIONS.match(text) is not None for _, text in docstrings)
     assert questions <= MAX_QUESTIONS * len(docstrings), f"{questions} of {len(docstrings)} begin with a question word"
+
+
+def test_functions_are_named_for_what_they_return_or_do() -> None:
+    found = [path for path in modules("diorama_core", "diorama_app") for _ in PREPOSITIONS.findall(path.read_text())]
+    assert len(found) <= MAX_PREPOSITIONS, "a noun for a value, a verb for an action (docs/style.md)"
 
 
 def test_functions_of_many_parameters_explain_them() -> None:
