@@ -137,9 +137,11 @@ def _solved(
         else:  # it does not stand there as observed, and says nothing about that place
             lines.append(weight[1] * is_unknown)
             wanted.append(weight[1] * height[i])
-    # A hidden foot says nothing against a height: the top was measured, and the foot is where the supporter is.
+    # A hidden foot says nothing against a height: the top was measured, and the foot is on the floor. A board of a
+    # retrieved shelf is not where that of the true one is.
     whole = [foot[i] + height[i] - (chains.constant[i] + chains.rows[i] @ start) for i in chains.members]
-    tall = np.where(foot_hidden[list(chains.members)], whole, 0.0)
+    members = list(chains.members)
+    tall = np.where(foot_hidden[members] & (problem.parent[members] < 0), whole, 0.0)
     stretch = problem.settings.max_stretch
     least = np.concatenate([start[:count] / stretch, np.full(unknowns - count, -np.inf)])
     most = np.concatenate([stretch * np.maximum(start[:count], tall), np.full(unknowns - count, np.inf)])
