@@ -157,24 +157,19 @@ def _call_here(function: Callable[..., Result], *arguments: Any) -> Result:
 
 def _begin(load: Callable[[], None]) -> None:
     """What a process does first."""
-    end_with_parent()
+    threading.Thread(target=_end_with_parent, args=(os.getppid(),), daemon=True, name="end-with-parent").start()
     load_quickly()
     load()
 
 
-def end_with_parent() -> None:
-    """End this process when the one that started it was killed: it would wait for work for ever.
+def _end_with_parent(parent: int) -> None:
+    """End this process when the one that started it was killed; where a system does not tell, being idle ends it.
 
-    Where a system does not tell, being idle ends it.
+    loky hands its processes nothing to wait on, so the parent is looked at.
     """
-    parent = os.getppid()
-
-    def wait_for_end() -> None:
-        while os.getppid() == parent:
-            time.sleep(ORPHAN_S)
-        os._exit(1)
-
-    threading.Thread(target=wait_for_end, daemon=True, name="end-with-parent").start()
+    while os.getppid() == parent:
+        time.sleep(ORPHAN_S)
+    os._exit(1)
 
 
 def _nothing() -> None:

@@ -7,16 +7,16 @@ and results must be picklable. One piece that fails, or kills the process it run
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from itertools import islice
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
-from diorama_core.processes import end_with_parent
 from diorama_core.progress import SILENT, Progress
 
 Item = TypeVar("Item")
@@ -120,7 +120,7 @@ class _Process(Generic[Item, Result]):
         for item in items:
             # Fresh processes: a fork would copy the locks of threads that do not exist in the child.
             self._pool = self._pool or ProcessPoolExecutor(
-                1, mp_context=get_context("spawn"), initializer=end_with_parent
+                1, mp_context=get_context("spawn"), initializer=_end_with_parent
             )
             try:
                 future = self._pool.submit(self._function, item)
@@ -150,6 +150,18 @@ class _Process(Generic[Item, Result]):
         """Drop what has not begun, and let it go."""
         if self._pool is not None:
             self._pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _end_with_parent() -> None:
+    """End this process when the one that started it was killed; it would wait for work for ever."""
+    parent = parent_process()
+    assert parent is not None
+
+    def wait_for_end() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=wait_for_end, daemon=True, name="end-with-parent").start()
 
 
 def _done(item: Item, future: Future[Result]) -> FinishedItem[Item, Result]:
