@@ -23,7 +23,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("diorama_core", "diorama_app")
 ELSEWHERE = ("diorama_core/library/", "diorama_core/synthesis/", "diorama_core/evaluation/")
-CEILING = 298
+CEILING = 296
 SLACK = 25
 """The ceiling is lowered when so many fewer are left."""
 MIN_TABLE = 3

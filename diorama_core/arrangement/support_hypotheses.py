@@ -19,6 +19,7 @@ from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.types import Camera, Plane, Scene, SceneObject, Support
 
 Role = Literal["floor", "wall", "ceiling", "object"]
+OBJECT: Role = "object"
 Box = tuple[float, float, float, float]
 """x1, y1, x2, y2 in the photo."""
 FARTHEST_WIDTHS = 3.0
@@ -153,14 +154,14 @@ def _object_hypothesis(
     _, _, gap, outside = min(candidates)
     return SupportHypothesis(
         edge,
-        "object",
+        OBJECT,
         taxonomy.resolve(item.category).category,
         taxonomy.resolve(other.category).category,
         _is_believed(scene, edge, evidence),
         gap,
         outside,
         below=evidence.below.get(item.id, {}).get(other.id, 0.0),
-        foot_in_box=_ends_within(item.box_px, other.box_px),
+        foot_in_box=ends_within(item.box_px, other.box_px),
     )
 
 
@@ -174,7 +175,7 @@ def _is_believed(scene: Scene, edge: Support, evidence: SupportEvidence) -> bool
     return edge.parent == believed.parent
 
 
-def _ends_within(box: Box | None, other: Box | None) -> bool:
+def ends_within(box: Box | None, other: Box | None) -> bool:
     """Whether a box's lower middle lies in another box, or just above it."""
     if box is None or other is None:
         return False

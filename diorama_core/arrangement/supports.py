@@ -15,6 +15,7 @@ from jaxtyping import Float
 
 from diorama_core.arrangement.support_hypotheses import (
     FARTHEST_WIDTHS,
+    OBJECT,
     ObservationNoise,
     SupportEvidence,
     SupportHypothesis,
@@ -78,7 +79,7 @@ def chosen_supports(
     for name, of_one in costs.items():
         for k in np.argsort(-of_one, kind="stable").tolist():  # of several planes the cheapest is left
             h = hypotheses[name][k]
-            parent = h.edge.parent if h.role == "object" else _ROOM
+            parent = h.edge.parent if h.role == OBJECT else _ROOM
             by_edge[parent, name] = k
             graph.add_edge(parent, name, weight=float(of_one[k]))
     if not graph:
@@ -129,7 +130,7 @@ def with_decided_supports(
             edge = replace(before, adheres_to=())
         elif not noise.measured and choice.hypothesis.role in ("wall", "ceiling"):
             moved = _move_along_sight(moved, item, _share_to_plane(moved, item, moved.plane(edge.parent)))
-        if not noise.measured and choice.hypothesis.role == "object" and choice.hypothesis.outside >= FARTHEST_WIDTHS:
+        if not noise.measured and choice.hypothesis.role == OBJECT and choice.hypothesis.outside >= FARTHEST_WIDTHS:
             moved = _move_along_sight(moved, item, _share_to_object(moved, item, moved.object(edge.parent), library))
         if choice.hypothesis.role == "floor":
             edge = replace(edge, adheres_to=standing_walls(moved, moved.object(name), noise, weights.walls))

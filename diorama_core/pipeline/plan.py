@@ -32,7 +32,7 @@ from diorama_core.layout.clear_shapes import clear_shapes
 from diorama_core.library.labels import is_named, meanings, with_article
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
-from diorama_core.perception.graph.geometric import with_graph
+from diorama_core.perception.language.relations import with_graph
 from diorama_core.pipeline.beliefs import with_beliefs
 from diorama_core.pipeline.beside import looking_ahead
 from diorama_core.pipeline.findings import drawing, finding, graph_sentence

@@ -51,7 +51,6 @@ from diorama_core.perception.foundation.proposals import (
     clicked_box,
     names_of,
 )
-from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
 from diorama_core.perception.measured import MeasuredGeometry
@@ -156,7 +155,6 @@ def foundation_stages(
             if filler is None
             else EmptyRoomArchitecture(PlanarRoom(), filler, depth_prediction, _foregrounds(store)),
             depth=NetworkDepth(),
-            graph=GeometricGraph(),
         )
     return stages if lmm is None else replace(stages, graph=LanguageGraph(lmm))
 

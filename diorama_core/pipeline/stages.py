@@ -13,7 +13,6 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.perception.camera.estimate import EmbeddedCamera, with_given_attitude
 from diorama_core.perception.depth import MeasuredDepth, RenderedDepth
 from diorama_core.perception.foundation.proposals import own_naming
-from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.masks import EmbeddedMasks
 from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.metrology import SingleViewMetrology
@@ -88,7 +87,6 @@ def embedded_stages(inputs: Inputs, library: ShapeLibrary, *, recipe: str = DEFA
         retrieval=HierarchicalRetrieval(library),
         pose=MadeToMeasure(RenderAndCompare(library), library),
         layout=layout_recipe(recipe, library, depth_measured=measured, sizes_reasoned=not measured),
-        graph=GeometricGraph() if measured else None,
         naming=own_naming(),
         refinement=MaskRefinement.of(library, depth_measured=measured) if recipe == DEFAULT_RECIPE else None,
     )

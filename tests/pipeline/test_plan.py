@@ -143,7 +143,6 @@ def test_every_object_has_reasons_for_its_kind_place_and_support(room: Room) -> 
     }
     measured = built.inputs.depth_m is not None
     assert any(r.term == "depth" for r in built.reasons) == measured
-    assert any(r.term == "graph" for r in built.reasons) == measured
     assert any(r.term == "outline" for r in built.reasons) != measured
 
 

@@ -14,7 +14,6 @@ from diorama_core.errors import InputError
 from diorama_core.layout.settings import LAYOUT, REFINEMENT
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.perception.camera import vanishing as lines
-from diorama_core.perception.graph import object_observations as graph
 from diorama_core.perception.measured import cloud as measured_objects
 from diorama_core.perception.metrology import settings as metrology
 from diorama_core.pipeline.settings import settings_of, with_settings
@@ -76,7 +75,6 @@ def test_an_optional_stage_is_left_out_by_its_name(stages):
         (False, "architecture.settings.search.clearance_m", photo_room.SETTINGS.search, 0.07),
         (True, "geometry.settings.voxel_m", measured_objects.SETTINGS, 0.05),
         (True, "architecture.settings.seen_through", walls.SETTINGS, 0.5),
-        (True, "graph.settings.larger_cost", graph.SETTINGS, 3.0),
         (True, "pose.settings.shapes.good_fit", posing.SETTINGS.shapes, 0.1),
         (True, "pose.stage.settings.search.fit_steps", posing.SETTINGS.search, 6.0),
     ],

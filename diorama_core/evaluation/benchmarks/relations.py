@@ -26,7 +26,6 @@ from diorama_core.evaluation.benchmarks.cases import LeftOut, attempted, recipe
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition
 from diorama_core.perception.masks import EmbeddedMasks
@@ -85,7 +84,9 @@ def judged(supports: tuple[Support, ...], names: dict[str, str], truth: Scene) -
 
 
 def relations_of(view: TruthView, *, with_depth: bool, graph: GraphStage | None = None) -> RelationCount:
-    """The graph of one picture, from masks and classes with depth or without; the camera's orientation is given."""
+    """The supports of one picture, from masks and classes with depth or without, by geometry unless a graph stage is
+    given; the camera's orientation is known.
+    """
     inputs = view.inputs if with_depth else _without_depth(view.inputs)
     camera = view.camera
     reading = CameraHypothesis(camera.intrinsics, camera.T_world_camera[:3, :3], 1.0)
@@ -95,13 +96,12 @@ def relations_of(view: TruthView, *, with_depth: bool, graph: GraphStage | None 
     objects = EmbeddedMasks().segment(inputs, quiet)
     stage = MeasuredGeometry() if with_depth else SingleViewMetrology()
     geometry = stage.measure(inputs, estimate, objects, quiet)
-    predicted: SceneGraph = (graph or GeometricGraph()).relate(inputs, objects, geometry, quiet)
+    supports = geometry.supports if graph is None else graph.relate(inputs, objects, geometry, quiet).supports
     by_mask = {o.mask_id: o.id for o in view.scene.objects if o.mask_id is not None}
-    return judged(predicted.supports, {o.id: by_mask[o.mask_id] for o in objects}, view.scene)
+    return judged(supports, {o.id: by_mask[o.mask_id] for o in objects}, view.scene)
 
 
 def _without_depth(inputs: Inputs) -> Inputs:
-
     return replace(inputs, depth_m=None)
 
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from diorama_core.artefacts import DetectedObject, Inputs, ObjectGeometry, Photo, SceneGraph
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
-from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import (
     EndpointDownError,
     LmmClient,
@@ -50,7 +49,8 @@ class LanguageGraph:
     """Asks for the scene graph over numbered objects; geometry mends what the replies leave wrong or open."""
 
     settings: LmmSettings
-    geometric: GeometricGraph = field(default_factory=GeometricGraph)
+    geometry_score: float = 0.5
+    """How sure an edge is that geometry alone tells."""
 
     def relate(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
@@ -63,7 +63,7 @@ class LanguageGraph:
         Raises:
             UnavailableError: when it is asked wrongly (key, model). One that is slow or down leaves it to geometry.
         """
-        fallback = self.geometric.relate(inputs, objects, geometry, progress.part(0.0, 0.1))
+        fallback = SceneGraph(geometry.supports, (self.geometry_score,) * len(geometry.supports))
         if not objects:
             return fallback
         marks = {number: o.id for number, o in enumerate(objects, start=1)}

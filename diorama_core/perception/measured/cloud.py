@@ -30,9 +30,8 @@ class MeasuredSettings:
     """From this many points on, a cloud is as good as it gets."""
     on_floor_m: float = 0.15
     """A bottom lower than this rests on the floor: lower parts are often hidden."""
-    contact_m: float = 0.2
-    """A bottom within this of a supporter's top rests on it."""
-    rug_m: float = 0.05
+    ceiling_m: float = 2.0
+    """What ends lower than this hangs on no ceiling."""
 
 
 SETTINGS = MeasuredSettings()

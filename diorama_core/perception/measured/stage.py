@@ -13,69 +13,10 @@ from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_norm
 from diorama_core.library.taxonomy import Category, resolve
 from diorama_core.perception.measured.boxes import TurnedExtent, completed, observed_extent, to_cuboid
 from diorama_core.perception.measured.cloud import MIN_POINTS, SETTINGS, MeasuredSettings, object_points
+from diorama_core.perception.measured.supports import resting_heights, supports_of_boxes
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
-from diorama_core.scene.types import Camera, Support, yaw_rotation
-
-
-def supporters(
-    extents: dict[str, TurnedExtent], categories: dict[str, Category], settings: MeasuredSettings = SETTINGS
-) -> tuple[Support, ...]:
-    """One edge per object: to the floor, to an object below, to the wall or the ceiling; never a cycle."""
-    return tuple(_edge(key, extents, categories, settings) for key in extents)
-
-
-def _edge(
-    key: str, extents: dict[str, TurnedExtent], categories: dict[str, Category], settings: MeasuredSettings
-) -> Support:
-    extent, category = extents[key], categories[key]
-    bottom = float(extent.low[2])
-    if category.mount == "ceiling":
-        return Support(key, "ceiling", "mounted on")
-    if category.mount == "wall" and bottom > settings.rug_m:
-        return Support(key, "wall", "mounted on")
-    below = _supporter_of(key, extents, categories, settings)
-    if below is not None and (category.mount == "surface" or bottom > settings.on_floor_m):
-        return Support(key, below)
-    if category.mount == "wall":
-        return Support(key, "wall", "mounted on")
-    return Support(key, "floor")
-
-
-def _supporter_of(
-    key: str, extents: dict[str, TurnedExtent], categories: dict[str, Category], settings: MeasuredSettings
-) -> str | None:
-    """The object whose top, or seat, is nearest under this one's bottom and under its middle."""
-    extent = extents[key]
-    bottom = float(extent.low[2])
-    best: tuple[float, str] | None = None
-    for other, candidate in extents.items():
-        if other == key or not categories[other].supports_objects or not _is_over(extent, candidate):
-            continue
-        if candidate.low[2] >= bottom or _volume(candidate) <= _volume(extent):
-            continue
-        gap = min(abs(bottom - height) for height in resting_heights(candidate, categories[other]))
-        if gap < settings.contact_m + 0.25 * float(extent.size[2]) and (best is None or gap < best[0]):
-            best = (gap, other)
-    return best[1] if best else None
-
-
-def _volume(extent: TurnedExtent) -> float:
-    return float(np.prod(extent.size))
-
-
-def _is_over(child: TurnedExtent, parent: TurnedExtent) -> bool:
-    """True if the child's middle is above the parent's footprint, within a small margin."""
-    middle = child.centre_world @ yaw_rotation(parent.yaw_rad)
-    return bool(((middle[:2] > parent.low[:2] - 0.08) & (middle[:2] < parent.high[:2] + 0.08)).all())
-
-
-def resting_heights(extent: TurnedExtent, category: Category) -> list[float]:
-    """Heights of an object's support surfaces: its top, and its seat."""
-    heights = [float(extent.high[2])]
-    if category.seat_height_m is not None and category.seat_height_m < extent.high[2]:
-        heights.append(category.seat_height_m)
-    return heights
+from diorama_core.scene.types import Camera, Support
 
 
 def grounded(
@@ -102,8 +43,9 @@ def grounded(
         if edge.parent == "floor":
             out[edge.child] = _with_bottom(extent, 0.0)
         elif edge.parent in extents:
-            heights = resting_heights(extents[edge.parent], categories[edge.parent])
-            out[edge.child] = _with_bottom(extent, min(heights, key=lambda h: abs(h - float(extent.low[2]))))
+            bottom = float(extent.low[2])
+            heights = resting_heights(extents[edge.parent], categories[edge.parent], bottom)
+            out[edge.child] = _with_bottom(extent, min(heights, key=lambda h: abs(h - bottom)))
     return out
 
 
@@ -145,7 +87,7 @@ class MeasuredGeometry:
             extents[detected.id], sureness[detected.id] = measured_extent(
                 detected, categories[detected.id], world, depth, posed, self.settings
             )
-        edges = supporters(extents, categories, self.settings)
+        edges = supports_of_boxes(objects, extents, categories, posed, self.settings)
         standing = grounded(extents, categories, edges, self.settings)
         cuboids = tuple(
             to_cuboid(key, extent, categories[key], posed.position, sureness[key]) for key, extent in standing.items()

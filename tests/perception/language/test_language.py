@@ -20,7 +20,6 @@ from diorama_core.artefacts import (
     SceneGraph,
 )
 from diorama_core.errors import Cancelled, UnavailableError
-from diorama_core.perception.graph.geometric import GeometricGraph
 from diorama_core.perception.language.client import LmmClient, LmmSettings, UnusableReplyError, strict_schema
 from diorama_core.perception.language.marks import marked
 from diorama_core.perception.language.replies import ClassesReply, GraphReply, json_in, tidy_label
@@ -161,6 +160,7 @@ def test_settings_come_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> 
 # -- the scene graph ------------------------------------------------------------------------------------------------
 
 CAMERA = Camera(Intrinsics(160, 120, 130.0, 130.0, 80.0, 60.0), np.eye(4))
+TRUTH = {"table_1": "floor", "lamp_1": "table_1", "chair_1": "floor"}
 
 
 def _scene(
@@ -178,7 +178,9 @@ def _scene(
         objects.append(DetectedObject(f"{name}_1", name, label, (x1, y1, x2, y2), mask, n, 1.0))
         centre, size = rows[name]
         cuboids.append(Cuboid(f"{name}_1", np.eye(3), np.array(centre, float), np.array(size), 1.0))
-    geometry = ObjectGeometry(CAMERA, tuple(cuboids), tuple(Support(o.id, "floor") for o in objects), ScaleSource.GIVEN)
+    geometry = ObjectGeometry(
+        CAMERA, tuple(cuboids), tuple(Support(child, parent) for child, parent in TRUTH.items()), ScaleSource.GIVEN
+    )
     photo = Photo(np.full((120, 160, 3), 200, np.uint8), "room.jpg", (160, 120))
     return Inputs(photo), tuple(objects), geometry
 
@@ -200,9 +202,6 @@ def _parents(graph: SceneGraph) -> dict[str, str]:
 def _asked(graph: SceneGraph) -> LanguageModelUse:
     assert graph.source.asked is not None
     return graph.source.asked
-
-
-TRUTH = {"table_1": "floor", "lamp_1": "table_1", "chair_1": "floor"}
 
 
 def test_a_good_reply_is_taken_with_captions_and_facing() -> None:
@@ -335,13 +334,6 @@ def test_marks_are_legible_at_any_size(size: tuple[int, int]) -> None:
         left, right = (round((3 * k + c) * width / 10 * factor) for c in (1, 3))
         part = picture[:, left:right]
         assert (part == 255).all(axis=-1).sum() > 40  # the digit, in white on the object's colour
-
-
-def test_geometry_alone_puts_the_lamp_on_the_table() -> None:
-    graph = GeometricGraph().relate(*_scene(), Progress())
-    assert _parents(graph) == TRUTH
-    assert all(0.5 < s <= 1.0 for s in graph.scores)
-    assert isinstance(GraphReply(support_relation=[]), GraphReply)
 
 
 def _graph_of(stub: StubLmm, **changes: Any) -> SceneGraph:

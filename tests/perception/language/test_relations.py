@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import SceneGraph
-from diorama_core.perception.graph.geometric import with_graph
+from diorama_core.perception.language.relations import with_graph
 from diorama_core.pose import RenderAndCompare
 from diorama_core.progress import Progress
 from tests.pose.rooms import LIBRARY, Room, camera_at, standing

@@ -1,1 +1,0 @@
-"""Support graphs from geometry, without a language model."""
