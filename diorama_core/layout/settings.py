@@ -94,8 +94,6 @@ class LayoutSettings:
     """Factor on a stuck object's footprint, each attempt."""
     min_certainty: float = 0.1
     """Weight of an object that is hardly seen."""
-    across_alone: float = 8.0
-    """Factor on the cost of moves across the picture, which is tried besides where objects must be parted."""
     riding: float = 0.05
     """Cost of moving on a supporter, against moving in the picture."""
     reaches_m: tuple[float, ...] = (0.15, 0.6, 2.0)

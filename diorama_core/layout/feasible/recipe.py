@@ -10,7 +10,7 @@ alike.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,7 +24,7 @@ from diorama_core.layout.feasible.reach import reaching_ceilings, reaching_loads
 from diorama_core.layout.feasible.relocate import cheapest_spot, relocate
 from diorama_core.layout.feasible.separate import Program, Separation, base, build_program, overlaps, relaxed, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
-from diorama_core.layout.feasible.visible_points import ObservedView, VisiblePoints
+from diorama_core.layout.feasible.visible_points import VisiblePoints, visible_points
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import measure
 from diorama_core.layout.settings import AS_IT_IS, LAYOUT, LayoutSettings, Weights
@@ -83,8 +83,7 @@ class FeasibleRecipe:
         problem = build_problem(scene, self.library, only=self.only, adherence_m=0.0, settings=self.settings)
         before = measure(problem, problem.R, problem.p, problem.scale)
         watched = scene.camera is not None and self._across > 1.0
-        seen_before = ObservedView.of(scene, self.library, self.settings) if watched else None
-        visible = {} if seen_before is None else seen_before.points
+        visible = visible_points(scene, self.library, self.settings) if watched else {}
         wanted, observations = self._wanted(problem, scene.camera, visible)
         best: tuple[Problem, Program, Separation] | None = None
         for _ in range(self.attempts):
@@ -96,7 +95,7 @@ class FeasibleRecipe:
                 structure = fitted_sizes(program, self._outline_cost(wanted))
                 program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             check = self._watcher(scene, program, progress, preview)
-            separation = _apart(program, self.rounds, check, seen_before, self._farther(program, scene.camera))
+            separation = _apart(program, self.rounds, check)
             if best is not None and len(separation.stuck) >= len(best[2].stuck):
                 break  # smaller objects that overlap as much as before have become smaller in vain
             best = (wanted, program, separation)
@@ -166,14 +165,6 @@ class FeasibleRecipe:
 
         return check
 
-    def _farther(self, program: Program, camera: Camera | None) -> tuple[Program, ...]:
-        """The moves where those across the picture cost more still: one of several ways to part a crowd."""
-        if camera is None or self._across <= 1.0:
-            return ()
-        shy = replace(self, observations=self.settings.across_alone * self.observations)
-        costs = shy._costs(program.problem, camera)
-        return (build_program(program.problem, program.structure, *costs),)
-
     def _rays(self, problem: Problem, camera: Camera | None) -> Float[np.ndarray, "n 3"] | None:
         if camera is None or self._across <= 1.0:
             return None
@@ -224,45 +215,15 @@ def _certainty(problem: Problem) -> Float[np.ndarray, " n"]:
     return np.maximum(known, problem.settings.min_certainty)
 
 
-def _apart(
-    program: Program,
-    rounds: int,
-    check: Callable[[np.ndarray, float], None],
-    view: ObservedView | None,
-    others: Sequence[Program],
-) -> Separation:
-    """The best of several ways to take overlaps away: all at once, one after another, and with other costs.
-
-    Which agrees better with the picture, where there is one; else which costs less. Objects that change their order
-    along the line of sight may cost little, but they hide one another.
-    """
+def _apart(program: Program, rounds: int, check: Callable[[np.ndarray, float], None]) -> Separation:
+    """The cheaper of two ways to take overlaps away: all at once, and one after another."""
     together = separate(program, rounds=rounds, check=check)
     if not program.tried:
         return together
-    separations = [relaxed(program, f) for f in (together, relocate(program, base(program)))]
-    for other in others:
-        separations.append(relaxed(other, separate(other, rounds=rounds, check=check)))
-        separations.append(relaxed(other, relocate(other, base(other))))
-    fewest, left = min(len(f.stuck) for f in separations), dict[bytes, Separation]()
-    for (
-        way
-    ) in separations:  # looking at one takes most of its time: only at those that are not ruled out, and once at each
-        if len(way.stuck) == fewest:
-            left.setdefault(way.y.tobytes(), way)
-    first, *more = left.values()
-    best = min(left.values(), key=lambda f: _disagreement(program, f, view)) if more else first
+    ways = [relaxed(program, way) for way in (together, relocate(program, base(program)))]
+    best = min(ways, key=lambda way: (len(way.stuck), float(program.cost(way.y))))
     check(best.y, best.depth_m)
     return best
-
-
-def _disagreement(program: Program, separation: Separation, view: ObservedView | None) -> tuple[float, float]:
-    """What of the picture is lost, and what the moves cost."""
-    cost = float(program.cost(separation.y))
-    if view is None:
-        return 0.0, cost
-    structure = program.structure
-    poses = program.problem.poses(structure.R, structure.p + program.moves(separation.y), structure.scale)
-    return 1.0 - view.agreement(poses), cost
 
 
 def _smaller(problem: Problem, structure: Structure, separation: Separation) -> Problem:

@@ -6,24 +6,17 @@ nothing was seen. The points of its surface that are seen, evenly spread over th
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
-import trimesh
-from jaxtyping import Float, Float32, Int, Int32
+from jaxtyping import Float
 from scipy.optimize import linear_sum_assignment
 
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.settings import LAYOUT, LayoutSettings
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.scene.types import Camera, Pose, Scene, box_corners
-
-if TYPE_CHECKING:
-    from diorama_core.render.raycast import Buffers, MeshCaster
-
+from diorama_core.scene.types import Camera, Scene, box_corners
 
 VisiblePoints = Mapping[str, Float[np.ndarray, "_ 3"]]
 """By object id, points in the object's frame at scale 1."""
@@ -45,76 +38,33 @@ class TrackedPoints:
     """Whether they are on the surface that was seen, rather than corners of the box."""
 
 
-@dataclass(frozen=True, eq=False)
-class ObservedView:
-    """The observed layout as its camera sees it."""
+def visible_points(scene: Scene, library: ShapeLibrary, settings: LayoutSettings = LAYOUT) -> VisiblePoints:
+    """Points that the scene's camera sees of each object; none of what is hidden or outside the picture.
 
-    camera: Camera
-    """In the size in which the layout is looked at."""
-    ids: tuple[str, ...]
-    meshes: tuple[trimesh.Trimesh, ...]
-    poses: tuple[Pose, ...]
-    view: Buffers
-    """Its instances are indices of `ids`."""
-    settings: LayoutSettings = LAYOUT
-
-    @classmethod
-    def of(cls, scene: Scene, library: ShapeLibrary, settings: LayoutSettings = LAYOUT) -> ObservedView | None:
-        """What the scene's camera sees; None without a camera or anything to see.
-
-        Args:
-            scene: as observed.
-            library: where shapes come from.
-            settings: numbers to work with.
-        """
-        items = [o for o in scene.objects if not o.hidden]
-        if not items or scene.camera is None:
-            return None
-        k = scene.camera.intrinsics
-        shrink = min(1.0, settings.long_side_px / max(k.width, k.height))
-        size = max(round(k.width * shrink), 1), max(round(k.height * shrink), 1)
-        camera = Camera(k.scaled(*size), scene.camera.T_world_camera)
-        meshes, poses = tuple(library.mesh(o.shape_id) for o in items), tuple(o.pose for o in items)
-        return cls(camera, tuple(o.id for o in items), meshes, poses, _caster(meshes, poses).buffers(camera), settings)
-
-    @cached_property
-    def points(self) -> VisiblePoints:
-        """Points that the camera sees of each object; empty for what is hidden or outside the picture."""
-        points = {}
-        for number, (name, pose) in enumerate(zip(self.ids, self.poses, strict=True)):
-            rows, columns = np.nonzero(self.view.instance == number)
-            step = max(len(rows) // self.settings.max_points, 1)
-            rows, columns = rows[::step], columns[::step]
-            rays = self.camera.rays(np.column_stack([columns + 0.5, rows + 0.5]))
-            world = self.camera.position + self.view.depth_m[rows, columns, None].astype(np.float64) * rays
-            points[name] = ((world - pose.position) @ pose.R_world_object) / pose.scale
-        return points
-
-    def agreement(self, poses: Mapping[str, Pose]) -> float:
-        """How far objects in other poses still cover what they covered, hiding included: mean over those seen."""
-        now = tuple(poses.get(name, pose) for name, pose in zip(self.ids, self.poses, strict=True))
-        after, before = _caster(self.meshes, now).instances(self._rays), self.view.instance
-        count = len(self.ids)
-        was, is_now, both = (_pixels_of(seen, count) for seen in (before, after, before[before == after]))
-        shares = both[was >= self.settings.min_points] / (was + is_now - both)[was >= self.settings.min_points]
-        return float(np.mean(shares)) if len(shares) else 1.0
-
-    @cached_property
-    def _rays(self) -> Float32[np.ndarray, "h w 6"]:
-        from diorama_core.render.raycast import PinholeView
-
-        return PinholeView(self.camera).all_rays()
-
-
-def _pixels_of(instance: Int32[np.ndarray, "*n"], count: int) -> Int[np.ndarray, "k"]:
-    """How many pixels show each of so many objects."""
-    return np.bincount(instance[instance >= 0], minlength=count)
-
-
-def _caster(meshes: Sequence[trimesh.Trimesh], poses: Sequence[Pose]) -> MeshCaster:
+    Args:
+        scene: as observed.
+        library: where shapes come from.
+        settings: numbers to work with.
+    """
     from diorama_core.render.raycast import MeshCaster  # the editor opens without it
 
-    return MeshCaster([(m, pose.matrix) for m, pose in zip(meshes, poses, strict=True)])
+    items = [o for o in scene.objects if not o.hidden]
+    if not items or scene.camera is None:
+        return {}
+    k = scene.camera.intrinsics
+    shrink = min(1.0, settings.long_side_px / max(k.width, k.height))
+    size = max(round(k.width * shrink), 1), max(round(k.height * shrink), 1)
+    camera = Camera(k.scaled(*size), scene.camera.T_world_camera)
+    view = MeshCaster([(library.mesh(o.shape_id), o.pose.matrix) for o in items]).buffers(camera)
+    points = {}
+    for number, item in enumerate(items):
+        rows, columns = np.nonzero(view.instance == number)
+        step = max(len(rows) // settings.max_points, 1)
+        rows, columns = rows[::step], columns[::step]
+        rays = camera.rays(np.column_stack([columns + 0.5, rows + 0.5]))
+        world = camera.position + view.depth_m[rows, columns, None].astype(np.float64) * rays
+        points[item.id] = ((world - item.pose.position) @ item.pose.R_world_object) / item.pose.scale
+    return points
 
 
 def tracked_points(

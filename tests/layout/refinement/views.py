@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from diorama_core.artefacts import DetectedObject
-from diorama_core.layout.feasible.visible_points import ObservedView
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Camera, Intrinsics, Scene
 
 
@@ -21,13 +21,12 @@ def looking_down(width: int = 320, height: int = 240) -> Camera:
 
 def seen_objects(scene: Scene, library: ShapeLibrary) -> tuple[DetectedObject, ...]:
     """Every object with the mask of what the camera sees of it."""
-    view = ObservedView.of(scene, library)
-    assert view is not None
-    found = []
-    for k, name in enumerate(view.ids):
-        item, mask = scene.object(name), view.view.instance == k
-        found.append(DetectedObject(name, item.category, item.label, (0.0, 0.0, 1.0, 1.0), mask, k, 1.0))
-    return tuple(found)
+    assert scene.camera is not None
+    view = MeshCaster([(library.mesh(o.shape_id), o.pose.matrix) for o in scene.objects]).buffers(scene.camera)
+    return tuple(
+        DetectedObject(o.id, o.category, o.label, (0.0, 0.0, 1.0, 1.0), view.instance == k, k, 1.0)
+        for k, o in enumerate(scene.objects)
+    )
 
 
 def agreement(scene: Scene, objects: tuple[DetectedObject, ...], library: ShapeLibrary) -> float:
