@@ -158,19 +158,14 @@ class Values:
     """Everything that speaks against them, in sigmas: their squares sum to a row's cost."""
     inset_px: Float[np.ndarray, "n 4"]
     """By how much the objects' outlines stay within their cuboids."""
-    bounds_px: Float[np.ndarray, "n 4"]
-    """Bounds of the cuboids in the picture."""
-    visible: Bool[np.ndarray, "n"]
-    """Whether they are in the picture at all."""
 
     def rows(self, chosen: np.ndarray) -> Values:
         """The chosen rows."""
-        return Values(self.residuals[chosen], self.inset_px[chosen], self.bounds_px[chosen], self.visible[chosen])
+        return Values(self.residuals[chosen], self.inset_px[chosen])
 
     def put(self, chosen: np.ndarray, anew: Values) -> None:
         """Replace the chosen rows."""
         self.residuals[chosen], self.inset_px[chosen] = anew.residuals, anew.inset_px
-        self.bounds_px[chosen], self.visible[chosen] = anew.bounds_px, anew.visible
 
 
 def values(
@@ -199,7 +194,7 @@ def values(
     bounds, visible = visible_bounds(corners, view.intrinsics)
     residuals = np.concatenate(
         [
-            edge_residuals(bounds, visible, inset_px, problems, view, settings),
+            _edge_residuals(bounds, visible, inset_px, problems, view, settings),
             _cut_off(corners, problems, view, settings),
             np.einsum("nij,nj->ni", problems.whitening, unknowns[:, 2:5] - problems.log_size),
             unknowns[:, 5:6],
@@ -211,7 +206,7 @@ def values(
         ],
         axis=1,
     )
-    return Values(residuals, inset_px, bounds, visible)
+    return Values(residuals, inset_px)
 
 
 def _cut_off(
@@ -255,7 +250,7 @@ def _unfilled(
     return inset
 
 
-def edge_residuals(
+def _edge_residuals(
     bounds: Float[np.ndarray, "n 4"],
     visible: Bool[np.ndarray, "n"],
     unfilled: Float[np.ndarray, "n 4"],
@@ -264,8 +259,6 @@ def edge_residuals(
     settings: CuboidFitSettings,
 ) -> Float[np.ndarray, "n 4"]:
     """How far the projected box is from the observed one, edge by edge; lenient as far as something hides the rest.
-
-    Each residual depends on its own edge of `bounds` alone.
 
     Args:
         bounds: left, top, right and bottom of the projected cuboids, pixels.
@@ -330,28 +323,14 @@ def _too_far(boxes: Cuboids, settings: CuboidFitSettings) -> Float[np.ndarray, "
     return (np.maximum(np.log(np.maximum(away, 1e-6) / settings.far_m), 0.0) / settings.far_log_sigma)[:, None]
 
 
-def seen_surface(
-    boxes: Cuboids, corners: Float[np.ndarray, "n 8 3"], view: View, settings: CuboidFitSettings
-) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n 2"]]:
-    """Depth of what is seen of the cuboids, before their centres by a share of their depth and width; these shares.
-
-    Args:
-        boxes: of n rows.
-        corners: theirs, in the camera frame (m).
-        view: intrinsics, and rotation from camera to world.
-        settings: of the fit.
-    """
-    turn = boxes.yaw_rad - np.arctan2(view.heading[1], view.heading[0])
-    shares = settings.seen_before_centre * np.abs(np.stack([np.cos(turn), np.sin(turn)], axis=-1))
-    depth = corners[..., 2].mean(axis=1) - (shares * boxes.size_m[:, :2]).sum(axis=1)
-    return depth, shares
-
-
 def _off_depth(
     boxes: Cuboids, corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View, settings: CuboidFitSettings
 ) -> Float[np.ndarray, "n 1"]:
-    """How far the cuboid's seen surface is from where a network sees it."""
-    depth = np.maximum(seen_surface(boxes, corners, view, settings)[0], settings.cut_near_m)
+    """How far what is seen of the cuboid is from where a network sees it: before its centre, by how it is turned."""
+    turn = boxes.yaw_rad - np.arctan2(view.heading[1], view.heading[0])
+    shares = settings.seen_before_centre * np.abs(np.stack([np.cos(turn), np.sin(turn)], axis=-1))
+    surface = corners[..., 2].mean(axis=1) - (shares * boxes.size_m[:, :2]).sum(axis=1)
+    depth = np.maximum(surface, settings.cut_near_m)
     return _robust((np.log(depth) - problems.log_depth) / problems.depth_sigma, settings)[:, None]
 
 
@@ -361,10 +340,12 @@ def _off_wall(boxes: Cuboids, problems: Problems, settings: CuboidFitSettings) -
     back = (boxes.centre[:, :2] * front).sum(axis=1) - boxes.size_m[:, 0] / 2
     ratio = np.maximum(-back, settings.min_back_m) / problems.wall_m
     off = np.log(ratio)
-    return (off / wall_sigmas(off, problems, settings))[:, None]
+    return (off / _wall_sigmas(off, problems, settings))[:, None]
 
 
-def wall_sigmas(off: Float[np.ndarray, "n"], problems: Problems, settings: CuboidFitSettings) -> Float[np.ndarray, "n"]:
+def _wall_sigmas(
+    off: Float[np.ndarray, "n"], problems: Problems, settings: CuboidFitSettings
+) -> Float[np.ndarray, "n"]:
     """Deviations of backs that are nearer than their walls, and of those behind, by the sign of `off`."""
     nearer = np.minimum(problems.wall_sigma, np.maximum(settings.wall_nearer_log_sigma, problems.wall_sigma / 5))
     return np.where((off < 0) & (problems.wall_sigma < UNTOLD), nearer, problems.wall_sigma)

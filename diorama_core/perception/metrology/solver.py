@@ -9,8 +9,8 @@ from jaxtyping import Float
 
 from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, Values, View, stacked, values
 from diorama_core.perception.metrology.settings import SETTINGS, CuboidFitSettings
-from diorama_core.perception.metrology.slopes import jacobian
 
+_STEP = 1e-5
 _LOW = np.array([-8.0, np.log(0.15), np.log(0.005), np.log(0.01), np.log(0.005), -8.0])
 _HIGH = np.array([8.0, np.log(25.0), np.log(8.0), np.log(8.0), np.log(5.0), 8.0])
 
@@ -123,8 +123,12 @@ def _slopes(
     view: View,
     settings: CuboidFitSettings = SETTINGS.fit,
 ) -> _Slopes:
-    """Gradients and normal matrices."""
-    derivatives = jacobian(problems, unknowns, here, view, settings)
+    """Gradients and normal matrices, by forward differences; insets of outlines are taken to stay."""
+    probes = (unknowns[None] + _STEP * np.eye(UNKNOWNS)[:, None]).reshape(-1, UNKNOWNS)
+    repeated = problems.rows(np.tile(np.arange(len(problems)), UNKNOWNS))
+    inset = np.tile(here.inset_px, (UNKNOWNS, 1))
+    there = values(probes, repeated, view, inset, settings).residuals.reshape(UNKNOWNS, *here.residuals.shape)
+    derivatives = ((there - here.residuals) / _STEP).transpose(1, 2, 0)
     turned = derivatives.transpose(0, 2, 1)
     return _Slopes((turned @ here.residuals[..., None])[..., 0], turned @ derivatives)
 
