@@ -90,19 +90,6 @@ def frustum_slack(points: Float[np.ndarray, "3 *n"], k: Intrinsics) -> Float[np.
     )
 
 
-def frustum_normals(k: Intrinsics) -> Float[np.ndarray, "5 3"]:
-    """Gradients of `frustum_slack` by the point, in the same order."""
-    return np.array(
-        [
-            [0.0, 0.0, 1.0],
-            [k.fx, 0.0, k.cx],
-            [-k.fx, 0.0, k.width - k.cx],
-            [0.0, k.fy, k.cy],
-            [0.0, -k.fy, k.height - k.cy],
-        ]
-    )
-
-
 def _clipped_bounds(
     corners: Float[np.ndarray, "n 8 3"], slack: Float[np.ndarray, "5 8 n"], k: Intrinsics
 ) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n"]]:
