@@ -30,8 +30,12 @@ class MeasuredSettings:
     """From this many points on, a cloud is as good as it gets."""
     on_floor_m: float = 0.15
     """A bottom lower than this rests on the floor: lower parts are often hidden."""
-    ceiling_m: float = 2.0
-    """What ends lower than this hangs on no ceiling."""
+    gap_m: float = 0.1
+    """Usual error of the height of an underside above what holds it."""
+    nearer_m: float = 0.08
+    """Something this much nearer below an object hides its end."""
+    gap_nats: float = 4.0
+    """What a gap of many such errors says against a supporter."""
 
 
 SETTINGS = MeasuredSettings()

@@ -87,7 +87,7 @@ class MeasuredGeometry:
             extents[detected.id], sureness[detected.id] = measured_extent(
                 detected, categories[detected.id], world, depth, posed, self.settings
             )
-        edges = supports_of_boxes(objects, extents, categories, posed, self.settings)
+        edges = supports_of_boxes(objects, extents, categories, depth, self.settings)
         standing = grounded(extents, categories, edges, self.settings)
         cuboids = tuple(
             to_cuboid(key, extent, categories[key], posed.position, sureness[key]) for key, extent in standing.items()

@@ -6,7 +6,7 @@ import pytest
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.taxonomy import category
 from diorama_core.perception.measured.boxes import TurnedExtent
-from diorama_core.perception.measured.supports import resting_heights, supports_of_boxes
+from diorama_core.perception.measured.supports import hidden_share, resting_heights, supports_of_boxes
 from diorama_core.scene.types import Camera, Intrinsics, Support
 from tests.perception.measured.test_stage import CATEGORIES, EDGES, EXTENTS, at
 from tests.synthetic_rooms import look
@@ -34,7 +34,7 @@ def _ends(extent: TurnedExtent, axis: int) -> tuple[float, float]:
 def found(**changed: TurnedExtent) -> dict[str, Support]:
     extents = EXTENTS | changed
     names = CATEGORIES | {key: category(key) for key in changed if key not in CATEGORIES}
-    return {s.child: s for s in supports_of_boxes(detected(extents), extents, names, CAMERA)}
+    return {s.child: s for s in supports_of_boxes(detected(extents), extents, names, np.zeros((240, 320)))}
 
 
 def test_every_object_is_held_by_what_it_touches() -> None:
@@ -48,6 +48,25 @@ def test_far_beside_a_table_nothing_rests_on_it() -> None:
 def test_what_stands_within_shelves_is_theirs() -> None:
     shelf, books = at(1.0, 0.0, (0.8, 0.8, 1.8)), at(1.0, 0.95, (0.2, 0.4, 0.25))
     assert found(bookshelf=shelf, books=books)["books"].parent == "bookshelf"
+
+
+def test_what_people_put_on_furniture_that_nobody_marked_hangs_on_no_wall() -> None:
+    assert found(cup=at(5.0, 0.9, (0.1, 0.1, 0.1)))["cup"].parent == "floor"
+
+
+def test_a_lower_end_that_is_seen_in_the_air_does_not_stand_on_the_floor() -> None:
+    assert found(chair=at(-1.0, 1.2, (0.5, 0.5, 0.9)))["chair"].parent == "wall"
+
+
+def test_what_is_nearer_below_an_object_hides_its_end() -> None:
+    mask = np.zeros((100, 100), dtype=bool)
+    mask[20:60, 30:70] = True
+    depth = np.where(mask, 3.0, 5.0)
+    assert hidden_share(mask, depth) == 0.0
+    depth[60:, :50] = 2.0
+    assert hidden_share(mask, depth) == pytest.approx(0.5)
+    mask[60:] = mask[59]
+    assert hidden_share(mask, depth) == 1.0, "the picture ends there"
 
 
 def test_however_boxes_lie_nothing_holds_itself_up() -> None:
