@@ -20,7 +20,7 @@ from tests.perception.language.stub_lmm import StubLmm, answering
 SIZE = (320, 240)
 SEEDS = range(2)
 AT_LEAST = 0.85
-"""Over 36 rooms it is .98 with depth and .96 from the photo alone (`diorama bench relations`); of few it varies."""
+"""Over 36 rooms it is .97 with depth and from the photo alone (`diorama bench relations`); of few it varies."""
 
 
 def _view(seed: int) -> TruthView:
