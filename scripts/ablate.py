@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from diorama_core.artefacts import Inputs, Photo
-from diorama_core.evaluation.benchmarks.ablation import FACTORS, built, certificate
+from diorama_core.evaluation.benchmarks.ablation import FACTORS, build, certificate
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.catalogue import built_in_library
@@ -53,13 +53,13 @@ def main() -> int:
     asked = plan(
         [PhotoSource(*pair) for pair in zip(a.annotations, a.photos, strict=True)], only=a.only, cache=a.stages
     )
-    before = built({}, asked, library, rooms=a.rooms, processes=a.workers)
+    before = build({}, asked, library, rooms=a.rooms, processes=a.workers)
     for name in a.names:
         after = {}
         for how, factor in FACTORS.items():
             value = usual[name] * factor
             if "." in name or factor == 0:
-                after[how] = built({name: value}, asked, library, rooms=a.rooms, processes=a.workers)
+                after[how] = build({name: value}, asked, library, rooms=a.rooms, processes=a.workers)
         kept = json.loads(a.json.read_text()) if a.json.exists() else {}
         kept[name] = certificate(usual[name], before, after, shlex.join(["python", *sys.argv]))
         write_atomically(a.json, (json.dumps(dict(sorted(kept.items())), indent=1) + "\n").encode())

@@ -35,7 +35,7 @@ from diorama_core.export.environment import environment_of
 from diorama_core.export.gathering import ExportOptions, ExportScene, gather
 from diorama_core.export.stability import stability, urdf_model
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.importing.forms import marked_file
+from diorama_core.importing.forms import read_mark
 from diorama_core.importing.opening import open_marked
 from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.library.catalogue import built_in_library
@@ -83,7 +83,7 @@ def moved(gathered: ExportScene, back: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def round_trip(path: Path, gathered: ExportScene) -> list[str]:
-    marked = marked_file(path)
+    marked = read_mark(path)
     if marked is None:
         return ["nothing of the scene is in the file"]
     opened = open_marked(marked)

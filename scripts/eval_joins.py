@@ -24,7 +24,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from diorama_core.editing.homes import as_one_door, placed_at_door
 from diorama_core.errors import DioramaError
-from diorama_core.evaluation.benchmarks.cases import SIZE, furnished, parse_seeds, recipe
+from diorama_core.evaluation.benchmarks.cases import SIZE, furnish, parse_seeds, recipe
 from diorama_core.geometry.openings import DOOR, wall_of
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.pipeline.run import build_scene
@@ -84,7 +84,7 @@ def built_pairs(seed: int, count: int) -> Iterator[tuple[Room, Room]]:
     made = 0
     for case in recipe(10 * count, 1, seed):
         try:
-            scene = furnished(case, LIBRARY)
+            scene = furnish(case, LIBRARY)
             view, door = photo_of_door(scene if first is None else with_door_of(scene, first[1]), case.seed)
         except (DioramaError, StopIteration) as error:
             print(f"{case.name} passed over: {error or 'its door is not seen'}", flush=True)

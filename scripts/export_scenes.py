@@ -62,9 +62,9 @@ def made(seeds: Iterable[int], library: ShapeLibrary) -> Iterator[Source]:
 
 def from_text(library: ShapeLibrary) -> Source:
     """A room from words."""
-    from diorama_core.text.compose import composed_room
+    from diorama_core.text.compose import compose_room
 
-    return Source("from text", composed_room(PROMPT, library).scene)
+    return Source("from text", compose_room(PROMPT, library).scene)
 
 
 def from_scan() -> Source:

@@ -34,11 +34,11 @@ from diorama_core.arrangement.support_terms import PATH, TERMS, place_name
 from diorama_core.arrangement.supports import LEAST_ODDS, STANDING_TERMS, wall_relation
 from diorama_core.artefacts import Inputs
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto
-from diorama_core.evaluation.benchmarks.cases import SEEDS, attempted, recipe
+from diorama_core.evaluation.benchmarks.cases import SEEDS, make_views, recipe
 from diorama_core.evaluation.benchmarks.photo_build import annotated_inputs
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.evaluation.benchmarks.system import WAYS
-from diorama_core.evaluation.metrics.scene import align_to_truth, matched
+from diorama_core.evaluation.metrics.scene import align_to_truth, match_all
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.plan import assemble, evaluate
@@ -150,7 +150,7 @@ def _true(view: TruthView, scene: Scene) -> tuple[Scene, dict[str, str]]:
     """The scene in the true world, and the built object of each true one."""
     there = align_to_truth(scene, view)
     truth = [view.scene.objects[k] for k in view.asked]
-    return there, {t.id: m.id for t, m in zip(truth, matched(truth, there), strict=True) if m is not None}
+    return there, {t.id: m.id for t, m in zip(truth, match_all(truth, there), strict=True) if m is not None}
 
 
 def _rendered(view: TruthView, scene: Scene) -> dict[str, frozenset[str]]:
@@ -199,7 +199,7 @@ def room_questions(
     questions: list[Question] = []
     standings: list[Standing] = []
     for case in (case for seed in SEEDS["development"] for case in recipe(rooms, 1, seed)):
-        for _, view in attempted((case,), tested, []):
+        for _, view in make_views((case,), tested, []):
             for way, noise in (("photo", REASONED), ("depth", MEASURED)):
                 scene, evidence = posed_scene(WAYS[way].inputs(view), searched, cache / f"{case.name}-{way}")
                 right = _rendered(view, scene)

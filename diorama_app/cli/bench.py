@@ -254,20 +254,18 @@ def _bench_text(a: argparse.Namespace) -> None:
 
 
 def _bench_speed(a: argparse.Namespace) -> int:
-    from diorama_core.evaluation.speed.bench import FULL, QUICK, committed_figures, regression_bytes, run, slower
+    from diorama_core.evaluation.speed.bench import FULL, QUICK, read_figures, regression_bytes, run, slower
     from diorama_core.io.atomic import write_atomically
     from diorama_core.library.catalogue import built_in_library
 
     _check(a)
     if a.tolerance <= 1:
         raise InputError(f"--tolerance {a.tolerance:g}: give more than 1, such as 1.6")
-    before = committed_figures(a.against)
+    before = read_figures(a.against)
     with progress_bar() as progress:
         bench = run(built_in_library(), a.seed, progress, QUICK if a.quick else FULL, before=before)
     if a.keep:
-        committed = (
-            committed_figures(a.keep) if a.keep.exists() else {}
-        )  # a quick run and a full one keep other figures
+        committed = read_figures(a.keep) if a.keep.exists() else {}  # a quick run and a full one keep other figures
         write_atomically(a.keep, regression_bytes({**committed, **bench.figures()}), error=InputError)
     show_bench(bench, a)
     worse = slower(bench.figures(), before, a.tolerance)

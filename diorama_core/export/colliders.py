@@ -18,7 +18,7 @@ from scipy.spatial import ConvexHull, QhullError
 from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, StaticSlab, is_soft
 from diorama_core.export.gathering import ExportObject, ExportOptions, ExportScene, gather, rigid_inverse
 from diorama_core.export.limbs import ExportLimb, limb_parts
-from diorama_core.export.overlaps import Cuts, cut, seated
+from diorama_core.export.overlaps import Cuts, cut, drape
 from diorama_core.export.physics import GRAVITY, Inertia, friction_of, inertia_of, plausible_mass_kg
 from diorama_core.export.slabs import barriers, ground_piece, slab_pieces
 from diorama_core.geometry.convex import ConvexPart
@@ -58,22 +58,22 @@ def physical_scene(gathered: ExportScene) -> PhysicalScene:
     bodies = {o.id: _body(gathered, o) for o in gathered.objects}
     for rug in [b for b in bodies.values() if is_sheet(b.node)]:
         riders = [bodies[o.id] for o in gathered.children_of(rug.node.id)]
-        bodies[rug.node.id] = replace(rug, free=False, carrier=None, parts=_held_parts(rug, riders))
+        bodies[rug.node.id] = replace(rug, free=False, carrier=None, parts=_foot_parts(rug, riders))
     cuts = Cuts(bodies, slabs)
     cuts.resolve()
     notes = []
     for child, carrier in sorted(cuts.sunk.items()):
         if bodies[child].free:
-            bodies[child] = _welded(bodies[child], carrier)
+            bodies[child] = _weld(bodies[child], carrier)
             notes.append(f"{child} is sunk into {carrier or 'the room'} and welded to it")
     for filled in cuts.filled():
         if bodies[filled].free:
-            bodies[filled] = _welded(bodies[filled], None)
+            bodies[filled] = _weld(bodies[filled], None)
             notes.append(f"{filled} is inside other objects and stays where it is")
     for child, body in bodies.items():
         parent = body.node.parent
         if body.free and parent is not None and _is_beside(body, bodies[parent]):
-            bodies[child] = _welded(body, parent)
+            bodies[child] = _weld(body, parent)
             notes.append(f"{child} stands beside {parent}, which is to carry it, and is welded to it")
     apart = {i: replace(b, parts=cuts.parts(i), moving=cuts.moving(b)) for i, b in bodies.items()}
     done = tuple(_resting(b, None if b.node.parent is None else apart[b.node.parent]) for b in apart.values())
@@ -96,20 +96,20 @@ def body_of(scene: Scene, library: ShapeLibrary, object_id: str) -> RigidBody:
 def _resting(body: RigidBody, carrier: RigidBody | None) -> RigidBody:
     """The body in balance; a soft one follows what carries it, too."""
     if carrier is None or not is_soft(body.node):
-        return balanced(body, carrier)
+        return balance(body, carrier)
     lowest, T = float(body.node.item.corners_world[:, 2].min()), rigid_inverse(body.node.T_world)
-    lain = [seated(part, lowest, world_parts(carrier)) for part in world_parts(body)]
+    lain = [drape(part, lowest, world_parts(carrier)) for part in world_parts(body)]
     pieces, held = ([p for some in each for p in some] for each in zip(*lain, strict=True))
-    rests = replace(body, parts=(*body.parts, *(_placed(T, p) for p in pieces)))
-    return shift_centre_over(rests, np.concatenate(held)[:, :2]) if held else balanced(body, carrier)
+    rests = replace(body, parts=(*body.parts, *(_place(T, p) for p in pieces)))
+    return shift_centre_over(rests, np.concatenate(held)[:, :2]) if held else balance(body, carrier)
 
 
-def balanced(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
+def balance(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
     """The body with its centre of mass above its foot, or above that part of it which its carrier holds up."""
     outline, low = _foot(body)
     if carrier is not None:
         tops = [p[np.abs(p[:, 2] - low) < NEAR_TOP_M][:, :2] for p in world_parts(carrier)]
-        outline = _shared_outline(outline, np.concatenate([np.zeros((0, 2)), *tops]))
+        outline = _intersect(outline, np.concatenate([np.zeros((0, 2)), *tops]))
     return shift_centre_over(body, outline)
 
 
@@ -129,7 +129,7 @@ def shift_centre_over(body: RigidBody, outline: Float[np.ndarray, "n 2"]) -> Rig
     total = body.mass_kg + sum(m.inertia.mass_kg for m in body.moving)
     weighed = [
         (body.inertia.mass_kg, body.inertia.centre),
-        *((m.inertia.mass_kg, _placed(m.limb.T_object_limb, m.inertia.centre)) for m in body.moving),
+        *((m.inertia.mass_kg, _place(m.limb.T_object_limb, m.inertia.centre)) for m in body.moving),
     ]
     T = body.node.T_world
     centre = T[:3, :3] @ sum((m * c for m, c in weighed), np.zeros(3)) / total + T[:3, 3]
@@ -152,7 +152,7 @@ def is_sheet(node: ExportObject) -> bool:
     return node.item.category == "rug" and float(node.item.size_m[2]) < MAX_SHEET_HEIGHT_M
 
 
-def _held_parts(rug: RigidBody, riders: Iterable[RigidBody]) -> tuple[Points, ...]:
+def _foot_parts(rug: RigidBody, riders: Iterable[RigidBody]) -> tuple[Points, ...]:
     """Pieces of a rug under the feet of what it carries. As a whole plate it would lift what stands over its edge, and
     a robot would push it; real ones give way under a foot and stay where they are."""
     corners = rug.node.item.corners_world
@@ -167,22 +167,22 @@ def _held_parts(rug: RigidBody, riders: Iterable[RigidBody]) -> tuple[Points, ..
                 ends = [
                     np.column_stack([flat, np.full(len(flat), z)]) for z in (corners[:, 2].min(), corners[:, 2].max())
                 ]
-                parts_on_rugs.append(_placed(rigid_inverse(rug.node.T_world), np.concatenate(ends)))
+                parts_on_rugs.append(_place(rigid_inverse(rug.node.T_world), np.concatenate(ends)))
     return tuple(parts_on_rugs)
 
 
 def world_parts(body: RigidBody) -> list[Points]:
     """Corners of all convex bodies of an object in the world, those that its joints move as they stand."""
     T = body.node.T_world
-    moving = [_placed(T @ m.limb.T_object_limb, q) for m in body.moving for q in m.parts]
-    return [*(_placed(T, p) for p in body.parts), *moving]
+    moving = [_place(T @ m.limb.T_object_limb, q) for m in body.moving for q in m.parts]
+    return [*(_place(T, p) for p in body.parts), *moving]
 
 
-def _placed(T: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+def _place(T: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
     return np.asarray(points @ T[:3, :3].T + T[:3, 3])
 
 
-def _shared_outline(foot: Float[np.ndarray, "n 2"], top: Float[np.ndarray, "k 2"]) -> Float[np.ndarray, "m 2"]:
+def _intersect(foot: Float[np.ndarray, "n 2"], top: Float[np.ndarray, "k 2"]) -> Float[np.ndarray, "m 2"]:
     """Corners of what two convex outlines have in common; those of the foot where that is next to nothing."""
     both = manifold3d.CrossSection.hull_points(foot) ^ manifold3d.CrossSection.hull_points(top)
     return foot if both.area() < MIN_HOLD_M2 else np.concatenate(both.to_polygons())
@@ -214,21 +214,21 @@ def _body(gathered: ExportScene, node: ExportObject) -> RigidBody:
     moving = tuple(
         MovingPart(
             limb,
-            _turning_clear(_scaled(limb_parts(library, shape.id, limb.number), node), limb),
+            _turning_clear(_scale(limb_parts(library, shape.id, limb.number), node), limb),
             weights[limb.number],
             joint_friction(limb, weights[limb.number], node.T_world),
         )
         for limb in node.limbs
     )
     if node.limbs:
-        parts = tuple(_boxed(p, half) for p in _scaled(limb_parts(library, shape.id, None), node))
+        parts = tuple(_clip(p, half) for p in _scale(limb_parts(library, shape.id, None), node))
     elif is_soft(node):
         parts = (box_corners(item.size_m),)  # soft objects lie on a face, not on their rim
     else:
-        parts = tuple(_boxed(p, half) for p in _scaled(parts_of_shape(library, shape), node))
+        parts = tuple(_clip(p, half) for p in _scale(parts_of_shape(library, shape), node))
     body = RigidBody(node, parts, weights[None], friction_of(surfaces), True, moving=moving)
     carrier = _carrier(gathered, node)
-    return body if carrier is _STANDING else _welded(body, carrier)
+    return body if carrier is _STANDING else _weld(body, carrier)
 
 
 def joint_friction(limb: ExportLimb, inertia: Inertia, T_world: Float[np.ndarray, "4 4"]) -> float:
@@ -237,7 +237,7 @@ def joint_friction(limb: ExportLimb, inertia: Inertia, T_world: Float[np.ndarray
         return MIN_JOINT_FRICTION
     axis, R = T_world[:3, :3] @ limb.axis, T_world[:3, :3]
     weight = np.array([0.0, 0.0, -GRAVITY * inertia.mass_kg])
-    lever = R @ (_placed(limb.T_object_limb, inertia.centre) - limb.origin)
+    lever = R @ (_place(limb.T_object_limb, inertia.centre) - limb.origin)
     load = weight if limb.kind == "slide" else np.cross(lever, weight)
     return max(MIN_JOINT_FRICTION, HOLD * abs(float(axis @ load)))
 
@@ -266,11 +266,11 @@ def _turning_clear(parts: tuple[Points, ...], limb: ExportLimb) -> tuple[Points,
     return parts
 
 
-def _scaled(parts: Iterable[ConvexPart], node: ExportObject) -> tuple[Points, ...]:
+def _scale(parts: Iterable[ConvexPart], node: ExportObject) -> tuple[Points, ...]:
     return tuple(np.asarray(p.vertices) * node.scale for p in parts)
 
 
-def _boxed(points: Points, half: Float[np.ndarray, "3"]) -> Points:
+def _clip(points: Points, half: Float[np.ndarray, "3"]) -> Points:
     """A part without what its simplified form reaches beyond the shape's box by, so that feet are level."""
     for axis, sign in itertools.product(np.eye(3), (1.0, -1.0)):
         rest = cut(points, -sign * axis, -float(half @ axis), np.inf)
@@ -302,5 +302,5 @@ def _carrier(gathered: ExportScene, node: ExportObject) -> str | None:
     return _STANDING if abs(float(node.item.corners_world[:, 2].min()) - height) < NEAR_FLOOR_M else None
 
 
-def _welded(body: RigidBody, carrier: str | None) -> RigidBody:
+def _weld(body: RigidBody, carrier: str | None) -> RigidBody:
     return replace(body, free=False, carrier=carrier)

@@ -100,7 +100,7 @@ def cycles_picture(
         folder = Path(name)
         job = _job(seen, library, folder, textures, samples, seed)
         job |= {"png": str(folder / "room.png"), "lights": room_lights(scene)}
-        _traced(job, progress, timeout_s)
+        _trace(job, progress, timeout_s)
         with Image.open(folder / "room.png", formats=("PNG",)) as drawn:
             return np.asarray(drawn.convert("RGB"))
 
@@ -152,7 +152,7 @@ def cycles_radiance(
         }  # fmt: skip
         if lens is not None:
             job["lens"] = {"focus_m": lens.focus_m, "aperture_m": lens.aperture_m}
-        _traced(job, progress, timeout_s)
+        _trace(job, progress, timeout_s)
         return np.load(folder / "room.npy")
 
 
@@ -175,7 +175,7 @@ def _job(
     }  # fmt: skip
 
 
-def _traced(job: Mapping[str, Any], progress: Progress, timeout_s: float) -> None:
+def _trace(job: Mapping[str, Any], progress: Progress, timeout_s: float) -> None:
     worker = Path(__file__).with_name("cycles_worker.py")
     run_in_blender(worker, job, name="Cycles", progress=progress, timeout_s=timeout_s)
 

@@ -37,7 +37,7 @@ def footprints(scene: ExportScene) -> dict[str, tuple[Outline, ...]]:
         if item.T_world[2, 2] > UPRIGHT:
             if item.mesh not in shapes:
                 shapes[item.mesh] = outline(_flat(scene.meshes[item.mesh], np.eye(2, 4)))
-            outlines[item.id] = tuple(_placed(o, item) for o in shapes[item.mesh])
+            outlines[item.id] = tuple(_place(o, item) for o in shapes[item.mesh])
         else:
             outlines[item.id] = silhouette(scene, item, np.eye(2, 3))
     return outlines
@@ -87,5 +87,5 @@ def _flat(mesh: ExportMesh, matrix: Float[np.ndarray, "2 4"]) -> Float[np.ndarra
     return np.concatenate([(s.vertices @ linear.T + offset)[s.faces] for s in mesh.surfaces])
 
 
-def _placed(shape: Outline, item: ExportObject) -> Outline:
+def _place(shape: Outline, item: ExportObject) -> Outline:
     return (shape * item.scale[:2]) @ item.T_world[:2, :2].T + item.T_world[:2, 3]

@@ -24,7 +24,7 @@ from diorama_core.export.gltf import placement
 from diorama_core.export.gltf_document import GltfDocument
 from diorama_core.export.lights import MainLight
 from diorama_core.export.palette import GameMaterials
-from diorama_core.export.unwrapping import unwrapped
+from diorama_core.export.unwrapping import unwrap
 from diorama_core.library.simplify import LARGEST_ERRORS, simplified_triangles
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Material, Surface
@@ -124,10 +124,10 @@ class _Builder:
     def _object(self, body: RigidBody, share: float) -> int:
         """An object above the middle of its foot, its moving parts below it, with a share of their triangles."""
         item, name = body.node, body.node.name
-        foot = _shifted(np.array([0.0, 0.0, -0.5 * item.item.size_m[2]]))
+        foot = _shift(np.array([0.0, 0.0, -0.5 * item.item.size_m[2]]))
         limbs = []
         for moving in body.moving:
-            limb, hinge = moving.limb, _shifted(moving.limb.origin)
+            limb, hinge = moving.limb, _shift(moving.limb.origin)
             about: dict[str, Any] = {
                 "joint": limb.kind,
                 "axis": [float(v) for v in FRONT_Z[:3, :3] @ limb.axis],
@@ -189,9 +189,9 @@ class _Builder:
             below: Further children.
             extras: What is said of it.
         """
-        drawn = [self._materials.merged(_moved(s, to_pivot) for s in surfaces) for surfaces in levels]
+        drawn = [self._materials.merged(_move(s, to_pivot) for s in surfaces) for surfaces in levels]
         if self._gathered.options.light_uv:
-            drawn = [tuple(unwrapped(one)) if one else one for one in drawn]
+            drawn = [tuple(unwrap(one)) if one else one for one in drawn]
         children = [*below]
         coarser = len(drawn) > 1
         parts = list(parts) if self._gathered.options.engine in ("godot", "unreal") else []
@@ -274,7 +274,7 @@ def _normals(surface: Surface, scale: Float[np.ndarray, "3"]) -> np.ndarray:
     return _single(turned / np.linalg.norm(turned, axis=1, keepdims=True))
 
 
-def _moved(surface: Surface, T: Float[np.ndarray, "4 4"]) -> Surface:
+def _move(surface: Surface, T: Float[np.ndarray, "4 4"]) -> Surface:
     vertices, normals = surface.vertices @ T[:3, :3].T + T[:3, 3], surface.normals @ T[:3, :3].T
     return replace(surface, vertices=_single(vertices), normals=_single(normals))
 
@@ -285,7 +285,7 @@ def _outward(corners: Points) -> Points:
     return away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
 
 
-def _shifted(offset: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4 4"]:
+def _shift(offset: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4 4"]:
     T = np.eye(4)
     T[:3, 3] = offset
     return T

@@ -19,7 +19,7 @@ from diorama_core.export.door_swings import door_swings, opening_out
 from diorama_core.export.lights import EvenLight, ExportLight, MainLight, even_light_of, lights_of, main_light_of
 from diorama_core.export.limbs import ExportLimb, OneShape, group_by_joint, limb_of
 from diorama_core.export.names import Labels
-from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, bounded_pictures
+from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, fit_pictures
 from diorama_core.export.pictures import Picture, photo_text
 from diorama_core.export.sharing import SharedAppearance
 from diorama_core.geometry.openings import with_openings
@@ -245,7 +245,7 @@ def gather(
         Cancelled: when asked to stop.
     """
     shared, labels = SharedAppearance(options.max_texture_px), Labels()
-    textures = bounded_pictures(scene, textures or {}, options.max_photo_textures_px)
+    textures = fit_pictures(scene, textures or {}, options.max_photo_textures_px)
     slugs = {r.id: (f"storey_{r.storey}", labels.slug(r.name)) for r in scene.rooms}
     groups = {name: slugs[room.id] for name, room in _rooms_by_id(scene).items()}
     planes, meshes = _planes(scene, options, textures, shared, labels)

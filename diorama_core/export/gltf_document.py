@@ -143,7 +143,7 @@ class GltfDocument:
         if self._draco:
             return self._draco_primitive(arrays, faces, self._material(material, textured=textured))
         if self._compressed:
-            arrays, faces = prepared(arrays, faces)
+            arrays, faces = prepare(arrays, faces)
         return {
             "attributes": {name: self._attribute(name, values) for name, values in arrays.items()},
             "indices": self._indices(faces.reshape(-1), len(surface.vertices)),
@@ -190,7 +190,7 @@ class GltfDocument:
     def _indices(self, indices: np.ndarray, vertices: int) -> int:
         data = indices.astype("<u2" if vertices < 65536 else "<u4")
         if self._compressed:
-            view = self._compressed_view(encoded_faces(indices, vertices), data, "TRIANGLES")
+            view = self._compressed_view(encode_faces(indices, vertices), data, "TRIANGLES")
         else:
             view = self._view(data.tobytes(), _ELEMENT_ARRAY_BUFFER)
         kind = _COMPONENT_TYPES[data.dtype.str[1:]]
@@ -198,7 +198,7 @@ class GltfDocument:
 
     def _vertex_view(self, values: np.ndarray) -> int:
         if self._compressed:
-            return self._compressed_view(encoded_vertices(values), values, "ATTRIBUTES")
+            return self._compressed_view(encode_vertices(values), values, "ATTRIBUTES")
         return self._view(values.tobytes(), _ARRAY_BUFFER)
 
     def _view(self, data: bytes, target: int | None = None) -> int:
@@ -308,7 +308,7 @@ def _sums(values: np.ndarray, faces: np.ndarray, count: int) -> np.ndarray:
     return out
 
 
-def prepared(
+def prepare(
     arrays: dict[str, np.ndarray], faces: Integer[np.ndarray, "m 3"]
 ) -> tuple[dict[str, np.ndarray], Integer[np.ndarray, "m 3"]]:
     """Vertices and faces in the order in which they are used, their values rounded."""
@@ -320,22 +320,22 @@ def prepared(
     used = ordered[np.sort(first)]
     place = np.zeros(count, dtype=np.uint32)
     place[used] = np.arange(len(used), dtype=np.uint32)
-    return {name: _rounded(name, values[used]) for name, values in arrays.items()}, place[ordered].reshape(-1, 3)
+    return {name: _round(name, values[used]) for name, values in arrays.items()}, place[ordered].reshape(-1, 3)
 
 
-def encoded_vertices(values: np.ndarray) -> bytes:
+def encode_vertices(values: np.ndarray) -> bytes:
     """Attribute data, one row a vertex, rows of a multiple of four bytes."""
     meshoptimizer.encode_vertex_version(0)  # the only one that the extension allows
     return bytes(meshoptimizer.encode_vertex_buffer(values))
 
 
-def encoded_faces(indices: Integer[np.ndarray, " n"], vertices: int) -> bytes:
+def encode_faces(indices: Integer[np.ndarray, " n"], vertices: int) -> bytes:
     """Indices of triangles."""
     meshoptimizer.encode_index_version(1)
     return bytes(meshoptimizer.encode_index_buffer(np.ascontiguousarray(indices, np.uint32), len(indices), vertices))
 
 
-def _rounded(name: str, values: np.ndarray) -> np.ndarray:
+def _round(name: str, values: np.ndarray) -> np.ndarray:
     if name in ("NORMAL", "TANGENT"):
         packed = np.zeros((len(values), 4), dtype="<i1")
         packed[:, : values.shape[1]] = np.round(values * 127.0)

@@ -114,7 +114,7 @@ def _carriers_first(bodies: tuple[RigidBody, ...]) -> list[RigidBody]:
     return done
 
 
-def grouped(links: tuple[Link, ...]) -> dict[str, tuple[Link, ...]]:
+def group(links: tuple[Link, ...]) -> dict[str, tuple[Link, ...]]:
     """Links by the one that carries them all, first that one, then what is joined to it; in the order of the links."""
     groups: dict[str, tuple[Link, ...]] = {}
     top: dict[str, str] = {}

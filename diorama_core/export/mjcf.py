@@ -69,8 +69,8 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     SubElement(root, "option", timestep="0.002", integrator="implicitfast", cone="elliptic", impratio="10")
     even, from_viewer = _ambient_irradiance(gathered)
     headlight = {
-        "ambient": numbers(np.full(3, _shown(0.0, even))),
-        "diffuse": numbers(np.full(3, _shown(even, from_viewer))),
+        "ambient": numbers(np.full(3, _brightness(0.0, even))),
+        "diffuse": numbers(np.full(3, _brightness(even, from_viewer))),
     }
     SubElement(SubElement(root, "visual"), "headlight", headlight)
     _defaults(SubElement(root, "default"))
@@ -277,20 +277,20 @@ def _ambient_irradiance(gathered: ExportScene) -> tuple[float, float]:
     return (even, 0.0) if gathered.main_light is not None else (0.8 * even, 0.8 * even)
 
 
-def _shown(before: float, added: float) -> float:
+def _brightness(before: float, added: float) -> float:
     """Brightness that a light adds in MuJoCo where there is other light before."""
     return float((before + added) ** (1 / SCREEN_GAMMA) - before ** (1 / SCREEN_GAMMA))
 
 
 def _light(element: Element, T: Float[np.ndarray, "4 4"], light: ExportLight, even: float) -> None:
-    strength = _shown(even, light.candela / light.white_nits / np.pi) * np.asarray(light.colour)
+    strength = _brightness(even, light.candela / light.white_nits / np.pi) * np.asarray(light.colour)
     kind = {"type": "point"} if light.kind == "lamp" else {"type": "spot", "cutoff": "80", "exponent": "1"}
     place = {"pos": numbers(T[:3, 3]), "dir": numbers(-T[:3, 2]), "attenuation": "0 0 1"}
     SubElement(element, "light", {**kind, **place, "diffuse": numbers(strength), "castshadow": "false"})
 
 
 def _main_light(world: Element, light: MainLight, even: float) -> None:
-    diffuse = _shown(even, light.lux / light.white_nits / np.pi) * np.asarray(light.colour)
+    diffuse = _brightness(even, light.lux / light.white_nits / np.pi) * np.asarray(light.colour)
     place = {"pos": numbers(light.T_world[:3, 3]), "dir": numbers(-light.T_world[:3, 2])}
     about = {"name": "main_light", "type": "directional", "diffuse": numbers(diffuse), "castshadow": "false"}
     SubElement(world, "light", {**about, **place})

@@ -54,7 +54,7 @@ class BodyOutline:
         return Polygon() if part is None else MultiPoint(part[:, :2]).convex_hull
 
 
-def outlined(physical: PhysicalScene) -> tuple[BodyOutline, ...]:
+def outlines(physical: PhysicalScene) -> tuple[BodyOutline, ...]:
     """All convex bodies but the floor, those that joints move as they stand."""
     ceilings_and_walls = [(None, p) for s in physical.slabs if s.plane.role != "floor" for p in s.pieces]
     owned = [(b.node.id, p) for b in physical.bodies for p in world_parts(b)]
@@ -118,7 +118,7 @@ def write_occupancy(gathered: ExportScene, path: Path, progress: Progress = SILE
     floor = floor_area(gathered)
     if floor.is_empty:
         raise ExportError("a map needs a floor, and this scene has none; draw a room first")
-    occupied = occupied_area(gathered, outlined(physical_scene(gathered)))
+    occupied = occupied_area(gathered, outlines(physical_scene(gathered)))
     write_package(path, f"{path.stem}.yaml", map_files(floor, occupied, path.stem).items())
 
 

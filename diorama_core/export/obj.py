@@ -36,7 +36,7 @@ def write_obj(scene: ExportScene, path: Path, progress: Progress = SILENT) -> No
                 add_entry(archive, name, content)
         return
     folder = companion_folder(path)
-    with whole_file(path) as temporary, _created(path.parent / folder):
+    with whole_file(path) as temporary, _create(path.parent / folder):
         with temporary.open("wb") as stream:
             _write_geometry(scene, stream.write, f"{folder}/{path.stem}.mtl", materials, progress)
         for name, content in _companions(materials, f"{path.stem}.mtl"):
@@ -45,7 +45,7 @@ def write_obj(scene: ExportScene, path: Path, progress: Progress = SILENT) -> No
 
 
 @contextmanager
-def _created(folder: Path) -> Iterator[None]:
+def _create(folder: Path) -> Iterator[None]:
     """The folder exists inside the block; one that is new and stays empty goes again."""
     known = folder.exists()
     folder.mkdir(exist_ok=True)

@@ -223,7 +223,7 @@ def subtract_convex(part: Points, hole: Points) -> list[Points]:
     return [part] if rest is None else sorted(pieces, key=lambda piece: -hull_volume(piece))[:MAX_PIECES]
 
 
-def seated(part: Points, lowest: float, below: Iterable[Points]) -> tuple[list[Points], list[Points]]:
+def drape(part: Points, lowest: float, below: Iterable[Points]) -> tuple[list[Points], list[Points]]:
     """How a soft part lies: pieces that reach down where what carries it is lower than what it was cut off above, and
     the points that it then lies on. Cut level it would lie on the highest place alone and tip; cloth follows.
 

@@ -43,7 +43,7 @@ class GameMaterials:
         by_material: dict[int, list[Surface]] = {}
         for surface in map(self._painted, surfaces):
             by_material.setdefault(id(surface.material), []).append(surface)
-        return tuple(_joined(some) for some in by_material.values())
+        return tuple(_join(some) for some in by_material.values())
 
     def _painted(self, surface: Surface) -> Surface:
         material = _without_flat_picture(surface.material)
@@ -77,7 +77,7 @@ def _swatches(colours: np.ndarray, side: int) -> np.ndarray:
     return np.kron(colours.reshape(side, side, 3), np.ones((SWATCH_PX, SWATCH_PX, 1), dtype=np.uint8)).astype(np.uint8)
 
 
-def _joined(surfaces: list[Surface]) -> Surface:
+def _join(surfaces: list[Surface]) -> Surface:
     """Surfaces of one material as one; what some lack, colours or coordinates, is white or zero there."""
     if len(surfaces) == 1:
         return surfaces[0]

@@ -18,7 +18,7 @@ MAX_PHOTO_TEXTURES_PX = 4096
 Pictures = Mapping[str, UInt8[np.ndarray, "_ _ _"]]
 
 
-def bounded_pictures(scene: Scene, pictures: Pictures, side_px: int) -> Pictures:
+def fit_pictures(scene: Scene, pictures: Pictures, side_px: int) -> Pictures:
     """The pictures, those that the scene shows reduced so that one square of that side would hold all of them.
 
     No side of one is longer than the square's, and all are reduced by one factor where they have more texels together.
@@ -30,13 +30,13 @@ def bounded_pictures(scene: Scene, pictures: Pictures, side_px: int) -> Pictures
     """
     names = {p.texture for p in scene.architecture.planes}
     names |= {m.texture for o in scene.objects for m in o.shown_photo_materials}
-    shown = {name: _scaled(p, side_px / max(p.shape[:2])) for name, p in pictures.items() if name in names}
+    shown = {name: _scale(p, side_px / max(p.shape[:2])) for name, p in pictures.items() if name in names}
     texels = sum(p.shape[0] * p.shape[1] for p in shown.values())
     factor = side_px / max(float(np.sqrt(texels)), 1.0)
-    return {**pictures, **{name: _scaled(p, factor) for name, p in shown.items()}}
+    return {**pictures, **{name: _scale(p, factor) for name, p in shown.items()}}
 
 
-def _scaled(picture: UInt8[np.ndarray, "h w c"], factor: float) -> UInt8[np.ndarray, "h2 w2 c"]:
+def _scale(picture: UInt8[np.ndarray, "h w c"], factor: float) -> UInt8[np.ndarray, "h2 w2 c"]:
     """The picture made smaller; as it is where the factor would make it larger."""
     if factor >= 1.0:
         return picture

@@ -84,8 +84,8 @@ def substance_of(material: Material) -> Substance:
         if any(word in name for word in substance.words):
             return substance
     if material.alpha < 0.9:
-        return _named("glass")
-    return _named("steel") if material.metallic > 0.5 else OTHER
+        return _substance("glass")
+    return _substance("steel") if material.metallic > 0.5 else OTHER
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +117,7 @@ def inertia_of(surfaces: tuple[Surface, ...], scale: Float[np.ndarray, "3"]) -> 
     """
     total, first, second = 0.0, np.zeros(3), np.zeros((3, 3))
     for surface in surfaces:
-        measured = _measured(surface)
+        measured = _measure(surface)
         areas = np.linalg.norm(measured.area_vectors * (np.prod(scale) / scale), axis=1)
         mass = _mass_kg(
             substance_of(surface.material), measured.enclosed_m3 * float(np.prod(scale)), float(areas.sum())
@@ -178,7 +178,7 @@ class _Measured:
 _MEASURED: WeakKeyDictionary[Surface, _Measured] = WeakKeyDictionary()
 
 
-def _measured(surface: Surface) -> _Measured:
+def _measure(surface: Surface) -> _Measured:
     """Measured once a surface."""
     if surface not in _MEASURED:
         a, b, c = (surface.vertices[surface.faces[:, k]].astype(np.float64) for k in range(3))
@@ -202,5 +202,5 @@ def enclosed_m3(surface: Surface) -> float:
     return volume if closed and volume > 0 else 0.0
 
 
-def _named(name: str) -> Substance:
+def _substance(name: str) -> Substance:
     return next(s for s in SUBSTANCES if s.name == name)

@@ -28,7 +28,7 @@ def picture_suffix(picture: Picture) -> str:
     return ".jpg" if picture.shape[2] == 3 and picture.shape[0] * picture.shape[1] > JPEG_FROM_PX else ".png"
 
 
-def encoded_picture(picture: Picture) -> bytes:
+def encode_picture(picture: Picture) -> bytes:
     """A picture's file: JPEG for large opaque ones, PNG for the others."""
     if picture_suffix(picture) == ".png":
         return png_bytes(picture)
@@ -68,14 +68,14 @@ class TexturePictures:
     """Pictures of materials, tinted and as files, each made once for all models of an export."""
 
     def __init__(self) -> None:
-        self.tinted = OncePerPicture(tinted)
-        self.encoded = OncePerPicture(encoded_picture)
+        self.tinted = OncePerPicture(tint)
+        self.encoded = OncePerPicture(encode_picture)
 
 
 def texture_file(picture: Picture) -> tuple[str, bytes]:
     """A picture with sides that are powers of two, as a file: how its name ends, and its content."""
     scaled = power_of_two(picture)
-    return picture_suffix(scaled), encoded_picture(scaled)
+    return picture_suffix(scaled), encode_picture(scaled)
 
 
 def photo_text(photo: Picture) -> str:
@@ -85,7 +85,7 @@ def photo_text(photo: Picture) -> str:
     return base64.b64encode(buffer.getvalue()).decode("ascii")
 
 
-def limited(picture: Picture, max_px: int | None) -> Picture:
+def shrink(picture: Picture, max_px: int | None) -> Picture:
     """The picture, reduced so that its longer side has at most `max_px` pixels."""
     longest = max(picture.shape[:2])
     if max_px is None or longest <= max_px:
@@ -109,7 +109,7 @@ def power_of_two(picture: Picture) -> Picture:
     return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_LINEAR)).reshape(height, width, -1)
 
 
-def tinted(picture: Picture, colour: tuple[float, float, float]) -> Picture:
+def tint(picture: Picture, colour: tuple[float, float, float]) -> Picture:
     """An sRGB picture multiplied by a linear colour, as a renderer multiplies them; alpha stays."""
     if colour == (1.0, 1.0, 1.0):
         return picture

@@ -378,7 +378,7 @@ def _dimensions(walls: Sequence[DrawnWall], floors: Sequence[Outline]) -> tuple[
         Dimension(corner, np.array([right, low]), np.array([0.0, -far])),
         Dimension(np.array([left, high]), corner, np.array([-far, 0.0])),
     )
-    return (*sides, *(d for d in whole if d.length_m > 0.01 and not _known(d, sides)))
+    return (*sides, *(d for d in whole if d.length_m > 0.01 and not _is_known(d, sides)))
 
 
 def _wall_dimensions(wall: DrawnWall) -> list[Dimension]:
@@ -390,7 +390,7 @@ def _wall_dimensions(wall: DrawnWall) -> list[Dimension]:
     return [*parts, Dimension(wall.start, wall.end, first + DIMENSION_GAP_M * wall.outward)]
 
 
-def _known(whole: Dimension, known: Sequence[Dimension]) -> bool:
+def _is_known(whole: Dimension, known: Sequence[Dimension]) -> bool:
     """Whether a wall's length says the same already."""
     along = (whole.end - whole.start) / whole.length_m
     return any(

@@ -81,7 +81,7 @@ def finely_cut(surface: Surface) -> Surface:
     """The surface with its large triangles cut where its picture shows something; otherwise it stays as it is."""
     if surface.uv is None or surface.material.texture is None:
         return surface
-    seen = _averaged(surface.material.texture, surface, PICTURE_EDGE_M)
+    seen = _average(surface.material.texture, surface, PICTURE_EDGE_M)
     if np.ptp(seen.reshape(-1, seen.shape[2]), axis=0).max() <= SHOWN_STEPS:
         return surface
     a, b, c = (surface.vertices[surface.faces[:, k]] for k in range(3))
@@ -108,13 +108,13 @@ def vertex_colours(surface: Surface) -> UInt8[np.ndarray, "n 4"]:
         linear *= surface.colours
     if surface.uv is not None and material.texture is not None:
         spacing_m = float(np.sqrt(2.0 * surface.area_m2 / len(surface.faces)))
-        around = srgb_to_linear(_averaged(material.texture, surface, spacing_m)[:, :, :3] / 255.0)
+        around = srgb_to_linear(_average(material.texture, surface, spacing_m)[:, :, :3] / 255.0)
         linear *= _texels(around, surface.uv)
     rgb = np.rint(255 * np.clip(linear_to_srgb(np.clip(linear, 0, 1)), 0, 1)).astype(np.uint8)
     return np.hstack([rgb, np.full((len(rgb), 1), round(255 * material.alpha), np.uint8)])
 
 
-def _averaged(picture: UInt8[np.ndarray, "h w c"], surface: Surface, edge_m: float) -> UInt8[np.ndarray, "_ _ c"]:
+def _average(picture: UInt8[np.ndarray, "h w c"], surface: Surface, edge_m: float) -> UInt8[np.ndarray, "_ _ c"]:
     """The picture with one texel for each square of an edge on the surface, or as it is where it is coarser."""
     assert surface.uv is not None
     height, width, channels = picture.shape

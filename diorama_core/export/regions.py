@@ -65,7 +65,7 @@ def _floor(gathered: ExportScene, bodies: Sequence[BodyOutline]) -> Region:
     largest = max(getattr(area, "geoms", [area]), key=lambda part: part.area)
     flat = np.asarray(largest.exterior.coords)[:-1]
     polygon = np.column_stack([flat, np.full(len(flat), level)])
-    free, holds = _left(area, level, HEADROOM_M, bodies, None)
+    free, holds = _rest(area, level, HEADROOM_M, bodies, None)
     middle, size = _box(polygon)
     return Region("floor_region", None, None, polygon, middle, size, np.inf, holds, free)
 
@@ -105,7 +105,7 @@ def _region(
     T = node.T_world if limb is None else node.T_world @ limb.T_object_limb
     polygon = surface.polygon @ T[:3, :3].T + T[:3, 3]
     high = min(surface.clearance_m, HEADROOM_M)
-    free, holds = _left(Polygon(polygon[:, :2]), float(polygon[:, 2].mean()), high, bodies, node.id)
+    free, holds = _rest(Polygon(polygon[:, :2]), float(polygon[:, 2].mean()), high, bodies, node.id)
     middle, size = _box(surface.polygon)
     name = body_name(node.slug, limb)
     return Region(
@@ -113,7 +113,7 @@ def _region(
     )
 
 
-def _left(
+def _rest(
     area: BaseGeometry, level: float, headroom_m: float, bodies: Sequence[BodyOutline], owner: str | None
 ) -> tuple[BaseGeometry, tuple[str, ...]]:
     """What of a surface nothing covers, and the ids of what stands on it.

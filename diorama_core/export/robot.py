@@ -27,7 +27,7 @@ from diorama_core.export.navigation import (
     free_spot,
     map_files,
     occupied_area,
-    outlined,
+    outlines,
     rings,
     standing_place,
     walkable,
@@ -71,7 +71,7 @@ def write_robot(gathered: ExportScene, path: Path, progress: Progress = SILENT) 
 
     progress.report(0.0, "preparing colliders")
     physical, radius = physical_scene(gathered), gathered.options.robot_radius_m
-    links, bodies = links_of(gathered, physical), outlined(physical)
+    links, bodies = links_of(gathered, physical), outlines(physical)
     regions, floor = regions_of(gathered, physical, bodies), floor_area(gathered)
     occupied = occupied_area(gathered, bodies)
     walk = walkable(floor, occupied, radius)
@@ -120,9 +120,9 @@ def _object(gathered: ExportScene, body: RigidBody) -> dict[str, Any]:
         "label": item.label,
         "category": item.category,
         "supporter": None if node.support is None else node.support.parent,
-        "position_m": _rounded(node.T_world[:3, 3]),
-        "rotation": _rounded(node.T_world[:3, :3], 6),
-        "size_m": _rounded(np.array(sides)),
+        "position_m": _round(node.T_world[:3, 3]),
+        "rotation": _round(node.T_world[:3, :3], 6),
+        "size_m": _round(np.array(sides)),
         "mass_kg": round(mass, 4),
         "friction": body.friction,
         "free": body.free,
@@ -140,13 +140,13 @@ def _joint(gathered: ExportScene, body: RigidBody, moving: MovingPart) -> dict[s
     return {
         "name": body_name(node.slug, limb),
         "kind": limb.kind,
-        "origin_m": _rounded(T[:3, :3] @ limb.origin + T[:3, 3]),
-        "axis": _rounded(T[:3, :3] @ limb.axis, 6),
+        "origin_m": _round(T[:3, :3] @ limb.origin + T[:3, 3]),
+        "axis": _round(T[:3, :3] @ limb.axis, 6),
         "lower": limb.lower,
         "upper": limb.upper,
         "open": limb.opened,
-        "handle_m": _rounded(T[:3, :3] @ handle + T[:3, 3]),
-        "pull": _rounded(T[:3, :3] @ pull, 6),
+        "handle_m": _round(T[:3, :3] @ handle + T[:3, 3]),
+        "pull": _round(T[:3, :3] @ pull, 6),
     }
 
 
@@ -187,8 +187,8 @@ def _region(region: Region, level: float, walk: tuple[Polygon, ...], radius_m: f
         "name": region.name,
         "object": region.owner,
         "body": region.body,
-        "outline_m": _rounded(region.polygon),
-        "size_m": _rounded(np.array(region.size_m)),
+        "outline_m": _round(region.polygon),
+        "size_m": _round(np.array(region.size_m)),
         "height_m": round(height - level, 4),
         "clearance_m": None if np.isinf(region.clearance_m) else round(region.clearance_m, 4),
         "holds": list(region.holds),
@@ -199,10 +199,10 @@ def _region(region: Region, level: float, walk: tuple[Polygon, ...], radius_m: f
 
 
 def _spot(at: tuple[float, ...], height: float, radius_m: float) -> dict[str, Any]:
-    return {"position_m": _rounded(np.array([*at, height])), "radius_m": round(radius_m, 4)}
+    return {"position_m": _round(np.array([*at, height])), "radius_m": round(radius_m, 4)}
 
 
-def _rounded(values: Float[np.ndarray, "..."], digits: int = 4) -> list:
+def _round(values: Float[np.ndarray, "..."], digits: int = 4) -> list:
     return np.round(np.asarray(values, dtype=float), digits).tolist()
 
 

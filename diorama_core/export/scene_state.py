@@ -201,13 +201,13 @@ def _materials(mesh: ExportMesh) -> list[str]:
 
 def _asset(mesh: ExportMesh, texture_files: TextureFiles) -> bytes:
     document = GltfDocument(generator="Diorama", texture_files=texture_files)
-    index = document.add_mesh(mesh.name, tuple(_turned(s, R_SHAPE_FILE) for s in mesh.surfaces))
+    index = document.add_mesh(mesh.name, tuple(_turn(s, R_SHAPE_FILE) for s in mesh.surfaces))
     node = document.add("nodes", {"name": mesh.name, "mesh": index})
     document.set_scene(document.add("scenes", {"name": "scene", "nodes": [node]}))
     return document.glb()
 
 
-def _turned(surface: Surface, R: Float[np.ndarray, "3 3"]) -> Surface:
+def _turn(surface: Surface, R: Float[np.ndarray, "3 3"]) -> Surface:
     """The surface in a frame whose axes are the columns of `R`."""
     return replace(
         surface,

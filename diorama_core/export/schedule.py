@@ -35,7 +35,7 @@ def write_csv(gathered: ExportScene, path: Path, progress: Progress = SILENT) ->
     with whole_file(path) as temporary, temporary.open("w", encoding="utf-8-sig", newline="") as file:
         rows = csv.writer(file)
         rows.writerow(COLUMNS)
-        for node in _listed(gathered):
+        for node in _rows(gathered):
             rows.writerow(_as_text(cell) for cell in _row(gathered, node))
 
 
@@ -45,7 +45,7 @@ def write_xlsx(gathered: ExportScene, path: Path, progress: Progress = SILENT) -
 
     from diorama_core.render.thumbnails import thumbnail
 
-    nodes, content = _listed(gathered), io.BytesIO()
+    nodes, content = _rows(gathered), io.BytesIO()
     book = xlsxwriter.Workbook(content, {"in_memory": True})
     book.set_properties({"created": datetime(1980, 1, 1)})  # the same scene gives the same bytes
     sheet, metres, bold = book.add_worksheet("Furniture"), book.add_format({"num_format": "0.000"}), book.add_format()
@@ -76,7 +76,7 @@ def write_xlsx(gathered: ExportScene, path: Path, progress: Progress = SILENT) -
     write_whole(path, content.getvalue())
 
 
-def _listed(gathered: ExportScene) -> list[ExportObject]:
+def _rows(gathered: ExportScene) -> list[ExportObject]:
     return sorted(gathered.objects, key=lambda o: (o.item.category, o.id))
 
 

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.gathering import ExportMesh, ExportScene
 from diorama_core.export.lights import ExportLight, MainLight
-from diorama_core.export.links import Link, collider_file, grouped, visual_file, write_linked
+from diorama_core.export.links import Link, collider_file, group, visual_file, write_linked
 from diorama_core.export.physics import FLOOR_FRICTION
 from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
 from diorama_core.progress import SILENT, Progress
@@ -57,7 +57,7 @@ def sdf_files(
     if gathered.main_light is not None:
         _main_light(world, gathered.main_light)
     _room(world, gathered, physical, folder)
-    for model in grouped(links).values():
+    for model in group(links).values():
         _model(world, model, folder)
     indent(root)
     return {main: '<?xml version="1.0"?>\n' + tostring(root, encoding="unicode") + "\n"}

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from diorama_core.export.names import unique_name
-from diorama_core.export.pictures import Picture, limited
+from diorama_core.export.pictures import Picture, shrink
 from diorama_core.render.appearance import Material, Surface
 
 MIN_AREA_M2 = 1e-12
@@ -60,7 +60,7 @@ class SharedAppearance:
             digest = hashlib.sha256(f"{picture.shape}".encode() + np.ascontiguousarray(picture).tobytes()).digest()
             self._read[id(picture)] = (picture, digest)  # holding the picture keeps its id from being reused
             if digest not in self._pictures:
-                self._pictures[digest] = limited(picture, self._max_px)
+                self._pictures[digest] = shrink(picture, self._max_px)
         return self._read[id(picture)][1]
 
 

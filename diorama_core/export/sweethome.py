@@ -18,7 +18,7 @@ from jaxtyping import Float
 from diorama_core.export.files import add_entry, whole_file
 from diorama_core.export.gathering import ExportMesh, ExportObject, ExportPlane, ExportScene, rigid_inverse
 from diorama_core.export.lights import ExportLight
-from diorama_core.export.pictures import TexturePictures, encoded_picture, picture_suffix
+from diorama_core.export.pictures import TexturePictures, encode_picture, picture_suffix
 from diorama_core.export.scene_state import R_SHAPE_FILE
 from diorama_core.export.wavefront import MaterialFile, ObjText
 from diorama_core.geometry.openings import OPENING_CATEGORIES
@@ -55,7 +55,7 @@ def write_sweet_home(scene: ExportScene, path: Path, progress: Progress = SILENT
         used = {str(p.plane.texture) for p in scene.planes} & scene.textures.keys()
         pictures = {name: f"textures/{n}{picture_suffix(scene.textures[name])}" for n, name in enumerate(sorted(used))}
         for name, entry in pictures.items():
-            add_entry(archive, entry, encoded_picture(scene.textures[name]))
+            add_entry(archive, entry, encode_picture(scene.textures[name]))
         add_entry(archive, "Home.xml", home_xml(scene, models, pictures))
 
 

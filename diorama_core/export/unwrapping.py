@@ -11,7 +11,7 @@ from diorama_core.errors import UnavailableError
 from diorama_core.render.appearance import Surface
 
 
-def unwrapped(surfaces: Sequence[Surface]) -> Iterator[Surface]:
+def unwrap(surfaces: Sequence[Surface]) -> Iterator[Surface]:
     """The surfaces of one mesh with `light_uv`, all in one square from 0 to 1; vertices are split at seams.
 
     Raises:

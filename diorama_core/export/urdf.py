@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.gathering import ExportMesh, ExportScene
-from diorama_core.export.links import Link, collider_file, grouped, visual_file, write_linked
+from diorama_core.export.links import Link, collider_file, group, visual_file, write_linked
 from diorama_core.export.physics import Inertia
 from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
 from diorama_core.progress import SILENT, Progress
@@ -48,7 +48,7 @@ def urdf_files(
         main: name of the room's file.
         folder: of meshes and objects, relative to the room's file.
     """
-    models = grouped(links)
+    models = group(links)
     free = {name: model for name, model in models.items() if model[0].joint == "free"}
     fixed = [link for name, model in models.items() if name not in free for link in model]
     files = {f"{folder}/{name}.urdf": _object(name, model) for name, model in free.items()}

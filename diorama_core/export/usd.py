@@ -21,7 +21,7 @@ from diorama_core.errors import ExportError
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, whole_file, write_package
 from diorama_core.export.gathering import ExportObject, ExportPlane, ExportScene, rigid_inverse
-from diorama_core.export.pictures import encoded_picture
+from diorama_core.export.pictures import encode_picture
 from diorama_core.export.usd_materials import (
     StageMaterials,
     add_camera,
@@ -51,7 +51,7 @@ def write_usdc(gathered: ExportScene, path: Path, progress: Progress = SILENT) -
 
 def write_usdz(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
     """Write one package: +Y up, binary, aligned and uncompressed, as AR Quick Look asks; raises `ExportError`."""
-    with _told_as_export_error(path), tempfile.TemporaryDirectory() as folder:
+    with _export_errors(path), tempfile.TemporaryDirectory() as folder:
         stage, pictures = build_stage(gathered, "textures", progress, up_axis="Y")
         layer = Path(folder) / "scene.usdc"
         stage.GetRootLayer().Export(str(layer))
@@ -67,7 +67,7 @@ def write_usdz(gathered: ExportScene, path: Path, progress: Progress = SILENT) -
 
 def _write_layer(gathered: ExportScene, path: Path, progress: Progress) -> None:
     path = Path(path)
-    with _told_as_export_error(path):
+    with _export_errors(path):
         files = layer_files(gathered, path.name, f"{companion_folder(path, 'usd')}/textures", progress)
         write_package(path, path.name, files)
 
@@ -100,7 +100,7 @@ def _check_whole(package: Path, path: Path) -> None:
 
 
 @contextmanager
-def _told_as_export_error(path: Path) -> Iterator[None]:
+def _export_errors(path: Path) -> Iterator[None]:
     """USD's own errors, such as a full disk, in one line."""
     try:
         yield
@@ -149,7 +149,7 @@ def build_stage(
     pictures: list[Entry] = []
     for name, picture in materials.pictures():
         progress.check()
-        pictures.append((name, encoded_picture(picture)))
+        pictures.append((name, encode_picture(picture)))
     return stage, pictures
 
 

@@ -39,16 +39,16 @@ def world_meshes(
     total = max(1, len(scene.planes) + len(scene.objects))
     for number, plane in enumerate(scene.planes):
         progress.report(number / total, f"writing {plane.name}")
-        yield WorldMesh(plane.id, plane.name, _placed(scene.meshes[plane.mesh].surfaces, np.eye(4), R))
+        yield WorldMesh(plane.id, plane.name, _place(scene.meshes[plane.mesh].surfaces, np.eye(4), R))
     for number, item in enumerate(scene.objects, start=len(scene.planes)):
         progress.report(number / total, f"writing {item.name}")
         matrix = item.T_world.copy()
         matrix[:3, :3] = matrix[:3, :3] * item.scale
-        yield WorldMesh(item.id, item.name, _placed(scene.meshes[item.mesh].surfaces, matrix, R))
+        yield WorldMesh(item.id, item.name, _place(scene.meshes[item.mesh].surfaces, matrix, R))
     progress.report(1.0, "finishing the file")
 
 
-def _placed(
+def _place(
     surfaces: tuple[Surface, ...], matrix: Float[np.ndarray, "4 4"], R: Float[np.ndarray, "3 3"] | None
 ) -> tuple[Surface, ...]:
     turn = np.eye(3) if R is None else R

@@ -18,7 +18,7 @@ MAX_QUIET_S = 90.0
 R = TypeVar("R")
 
 
-def imported_apart(
+def import_apart(
     path: Path, shapes: Path, library_name: str | None, progress: Progress, unit_m: float | None = None
 ) -> Imported:
     """`import_scene` in a process of its own; it raises the same, and `InputError` where that process had to end.
@@ -30,7 +30,7 @@ def imported_apart(
         progress: reports and cancellation.
         unit_m: metres in one unit of the file; None believes the file.
     """
-    return _apart(path, _imported, path, shapes, library_name, unit_m, progress=progress)
+    return _apart(path, _import, path, shapes, library_name, unit_m, progress=progress)
 
 
 def read_apart(path: Path, shapes: Path, known: frozenset[str], progress: Progress) -> Opened:
@@ -45,7 +45,7 @@ def read_apart(path: Path, shapes: Path, known: frozenset[str], progress: Progre
     return _apart(path, read_scene, path, shapes, known, progress=progress)
 
 
-def _imported(path: Path, shapes: Path, library_name: str | None, unit_m: float | None, progress: Progress) -> Imported:
+def _import(path: Path, shapes: Path, library_name: str | None, unit_m: float | None, progress: Progress) -> Imported:
     return import_scene(path, shapes, library_name=library_name, unit_m=unit_m, progress=progress)
 
 

@@ -49,7 +49,7 @@ def read_array_cloud(path: Path) -> Float[np.ndarray, "n 3"]:
     for array_name, stream, size in _arrays(path):
         if array_name != name:
             continue
-        _checked(stream, min(size, MAX_ARRAY_BYTES))
+        _check(stream, min(size, MAX_ARRAY_BYTES))
         rows = np.load(stream, allow_pickle=False)
         if rows.dtype.names is not None:
             return np.column_stack([rows[axis].astype(np.float64).ravel() for axis in "xyz"])
@@ -101,7 +101,7 @@ def _difference(values: Float[np.ndarray, "n"], width: int) -> float:
 def _cloud_in(path: Path) -> str | None:
     """The name of the array that is a list of points; empty for the only one of a file."""
     for name, stream, size in _arrays(path):
-        shape, dtype = _checked(stream, min(size, MAX_ARRAY_BYTES))
+        shape, dtype = _check(stream, min(size, MAX_ARRAY_BYTES))
         if dtype.names is not None:
             if {"x", "y", "z"} <= set(dtype.names) and np.prod(shape) >= MIN_POINTS:
                 return name
@@ -125,7 +125,7 @@ def _arrays(path: Path) -> Iterator[tuple[str, IO[bytes], int]]:
                 yield member.filename, stream, member.file_size
 
 
-def _checked(stream: IO[bytes], most: int) -> tuple[tuple[int, ...], np.dtype]:
+def _check(stream: IO[bytes], most: int) -> tuple[tuple[int, ...], np.dtype]:
     """Shape and type of an array whose header promises no more than so many bytes; the stream is where it was.
 
     Raises:

@@ -45,7 +45,7 @@ def likely_unit(points: Float[np.ndarray, "n 3"], up: Float[np.ndarray, "3"] | N
     if up is not None:
         axis = int(np.argmax(np.abs(up)))
     else:
-        axis = max((2, 1), key=lambda a: _levelled(points[:, a], float(low[a]), float(high[a])))
+        axis = max((2, 1), key=lambda a: _level_share(points[:, a], float(low[a]), float(high[a])))
     width = float(np.sqrt(np.prod(np.delete(extent, axis))))
     return max(UNITS, key=lambda unit: _log_likelihood(unit, float(extent[axis]), width))
 
@@ -56,7 +56,7 @@ def _log_likelihood(unit: Unit, height: float, width: float) -> float:
     return float(np.log(unit.share) - (off**2 + across**2) / 2)
 
 
-def _levelled(values: Float[np.ndarray, "n"], low: float, high: float) -> float:
+def _level_share(values: Float[np.ndarray, "n"], low: float, high: float) -> float:
     """How much of all values lies in few bins."""
     if high <= low:
         return 1.0

@@ -41,7 +41,7 @@ def numbered_frames(folder: Path) -> Frames:
     info = text_of(folder / "_info.txt") or text_of(folder / "info.txt")
     stated = re.search(r"m_calibrationDepthIntrinsic\s*=([^\n]*)", info)
     known = None if stated is None else np.array(stated[1].split(), float)
-    for depth in _found(folder, files, "*.depth.png", "*.depth.pgm"):
+    for depth in _find(folder, files, "*.depth.png", "*.depth.pgm"):
         stem = depth.name.split(".")[0]
         pose = depth.with_name(f"{stem}.pose.txt")
         T = numbers_of(pose) if files.holds(pose) else np.full((4, 4), np.nan)
@@ -69,7 +69,7 @@ def replica_frames(folder: Path) -> Frames:
         k = Intrinsics(given["w"], given["h"], *(float(given[key]) for key in ("fx", "fy", "cx", "cy")))
         steps = float(given["scale"])
     frames = []
-    for depth, row in zip(_found(folder, files, "results/depth*.png"), rows, strict=False):
+    for depth, row in zip(_find(folder, files, "results/depth*.png"), rows, strict=False):
         picture = next(filter(files.holds, depth.parent.glob(depth.stem.replace("depth", "frame") + ".*")), None)
         frames.append(DepthFrame(depth, Camera(k.scaled(*_size(depth)), row.reshape(4, 4)), None, picture, 1 / steps))
     notes = () if text else ("the camera is that of NICE-SLAM's Replica (600 of 1200 pixels)",)
@@ -79,10 +79,10 @@ def replica_frames(folder: Path) -> Frames:
 def matterport_frames(folder: Path) -> Frames:
     """`undistorted_depth_images` in 1/4000 m, with cameras that look along -z in `undistorted_camera_parameters`."""
     files, frames = ContainedFiles(folder, InputError), []
-    depths = {p.name: p for p in _found(folder, files, "undistorted_depth_images/**/*.png")}
-    pictures = {p.name: p for p in _found(folder, files, "undistorted_color_images/**/*.jpg")}
+    depths = {p.name: p for p in _find(folder, files, "undistorted_depth_images/**/*.png")}
+    pictures = {p.name: p for p in _find(folder, files, "undistorted_color_images/**/*.jpg")}
     k = np.eye(3)
-    for conf in _found(folder, files, "undistorted_camera_parameters/**/*.conf"):
+    for conf in _find(folder, files, "undistorted_camera_parameters/**/*.conf"):
         for words in (line.split() for line in text_of(conf).splitlines()):
             if words[:1] == ["intrinsics_matrix"]:
                 k = np.array(words[1:10], float).reshape(3, 3)
@@ -96,7 +96,7 @@ def matterport_frames(folder: Path) -> Frames:
     return Frames(tuple(frames), UP_Z, ("depth of Matterport3D, in 1/4000 m",))
 
 
-def _found(folder: Path, files: ContainedFiles, *patterns: str) -> Iterator[Path]:
+def _find(folder: Path, files: ContainedFiles, *patterns: str) -> Iterator[Path]:
     return filter(files.holds, sorted(path for pattern in patterns for path in folder.rglob(pattern)))
 
 

@@ -97,7 +97,7 @@ def stray_frames(folder: Path) -> Frames:
         name = f"{int(row[1]):06d}.png"
         depth, sure = folder / "depth" / name, folder / "confidence" / name
         if files.holds(depth):
-            camera = Camera(k, _posed(row[2:5], row[5:9]))
+            camera = Camera(k, _pose(row[2:5], row[5:9]))
             frames.append(DepthFrame(depth, camera, sure if files.holds(sure) else None))
     return Frames(tuple(frames), UP_Y)
 
@@ -117,7 +117,7 @@ def tum_frames(folder: Path) -> Frames:
             k = KINECT.scaled(*opened.size)
         shown = min(pictures, key=lambda p: abs(float(p[0]) - float(time)), default=None)
         picture = folder / shown[1] if shown is not None and files.holds(folder / shown[1]) else None
-        camera = Camera(k, _posed(poses[nearest, 1:4], poses[nearest, 4:8]))
+        camera = Camera(k, _pose(poses[nearest, 1:4], poses[nearest, 4:8]))
         frames.append(DepthFrame(depth, camera, None, picture, TUM_UNIT_M))
     return Frames(tuple(frames), UP_Z, ("depth of TUM RGB-D, in 1/5000 m",))
 
@@ -217,7 +217,7 @@ def _with_poses(folder: Path, frame_files: dict[str, tuple[Path, Path, Path | No
     return Frames(tuple(frames), poses.up, poses.notes)
 
 
-def _posed(position: Float[np.ndarray, "3"], quaternion: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4 4"]:
+def _pose(position: Float[np.ndarray, "3"], quaternion: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4 4"]:
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = Rotation.from_quat(quaternion).as_matrix(), position
     return T

@@ -64,13 +64,13 @@ def scene_of_parts(
     if not parts:
         raise InputError(f"{path.name} has no geometry in it; export the scene again")
     room = room_of(parts)
-    known = known or _learnt(progress)
+    known = known or _learn(progress)
     shaped: list[_Shaped] = []
     notes = list(room.notes)
     for number, part in enumerate(room.objects):
         progress.report(0.5 + 0.5 * number / max(1, len(room.objects)), f"taking in {part.name}")
         try:
-            shaped.append(_known_copy(part, shaped) or _taken_in(part, path, sink, known))
+            shaped.append(_find_copy(part, shaped) or _add(part, path, sink, known))
         except LibraryError as error:
             notes.append(f"{part.name} was left out: {error}")
     objects = _objects(shaped)
@@ -104,7 +104,7 @@ def take_missing_shapes(
         InputError: the file does not hold the geometry of one of them.
         LibraryError: a shape cannot be kept.
     """
-    known = known or _learnt(progress)
+    known = known or _learn(progress)
     for number, shape_id in enumerate(sorted(missing)):
         progress.report(0.5 + 0.5 * number / len(missing), f"taking in {shape_id}")
         item = next(o for o in scene.objects if o.shape_id == shape_id)
@@ -114,24 +114,24 @@ def take_missing_shapes(
                 f"{path.name} does not hold the shape {shape_id!r}; name the library that has it: --library"
             )
         given = Given(up="+z", front="+x", unit_m=1.0, category=item.category, source=path.name, reason="the file")
-        sink.add(_ingested(part, shape_id, path, given, known))
+        sink.add(_ingest(part, shape_id, path, given, known))
 
 
-def _learnt(progress: Progress) -> KnownShapes:
+def _learn(progress: Progress) -> KnownShapes:
     message = "learning what furniture looks like (once)"
     return known_shapes(on_step=lambda share: progress.report(0.5 * share, message))
 
 
-def _taken_in(part: Part, path: Path, sink: ShapeSink, known: KnownShapes) -> _Shaped:
+def _add(part: Part, path: Path, sink: ShapeSink, known: KnownShapes) -> _Shaped:
     stem = re.sub(r"[^a-z0-9]+", "-", f"{path.stem}-{part.name}".lower()).strip("-")[:80] or "shape"
     digest = hashlib.sha256(np.round(part.whole.vertices, 5).tobytes()).hexdigest()[:6]
     given = Given(up="+z", front=part.front, unit_m=1.0, category=part.category, source=path.name, reason="the file")
-    item = _ingested(part, f"{stem}-{digest}", path, given, known)
+    item = _ingest(part, f"{stem}-{digest}", path, given, known)
     sink.add(item)
     return _Shaped(part, item.record, _pose(part, item.record))
 
 
-def _ingested(part: Part, shape_id: str, path: Path, given: Given, known: KnownShapes) -> Ingested:
+def _ingest(part: Part, shape_id: str, path: Path, given: Given, known: KnownShapes) -> Ingested:
     raw = RawModel(part.unturned, (part.name,), UNKNOWN, ())
     source = ModelSource(Path(f"{part.name.replace('/', ' ')}.glb"), Path(), shape_id, f"{path.name} {shape_id}", given)
     return ingest_model(raw, source, known, square=False)
@@ -147,7 +147,7 @@ def _pose(part: Part, record: Shape) -> Pose:
     return Pose(part.turn @ R, part.turn @ middle, np.ones(3))
 
 
-def _known_copy(part: Part, shaped: Sequence[_Shaped]) -> _Shaped | None:
+def _find_copy(part: Part, shaped: Sequence[_Shaped]) -> _Shaped | None:
     """An earlier part of which this one is a copy, turned about up."""
     for other in shaped:
         if part.key is None or other.part.key != part.key:

@@ -83,7 +83,7 @@ class SceneForm:
 
 
 @contextmanager
-def told(path: Path) -> Iterator[tuple[SceneForm, Path]]:
+def open_form(path: Path) -> Iterator[tuple[SceneForm, Path]]:
     """The form of a file or folder and where it lies; an archive is unpacked for the time of the context.
 
     Raises:
@@ -95,7 +95,7 @@ def told(path: Path) -> Iterator[tuple[SceneForm, Path]]:
         yield form, path
         return
     if head.is_zip and what_else(head) is None:
-        with unpacked(path) as folder, told(content_of(folder)) as recognised:
+        with unpacked(path) as folder, open_form(content_of(folder)) as recognised:
             yield recognised
         return
     other = what_else(head)
@@ -107,14 +107,14 @@ def told(path: Path) -> Iterator[tuple[SceneForm, Path]]:
     )
 
 
-def marked_file(path: Path) -> MarkedFile | None:
+def read_mark(path: Path) -> MarkedFile | None:
     """What Diorama wrote into a file; None when it comes from another program.
 
     Raises:
         InputError: the file is missing, of a kind that is not read, or damaged.
         UnavailableError: an optional library is missing.
     """
-    with told(path) as (form, place):
+    with open_form(path) as (form, place):
         content = form.read(place, Progress(), None)
     return content if isinstance(content, MarkedFile) else None
 

@@ -54,13 +54,13 @@ def read_marked_gltf(path: Path) -> MarkedFile | None:
         InputError: when the file cannot be read.
     """
     try:
-        return _marked(path)
+        return _mark(path)
     except (LibraryError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError, OSError) as error:
         reason = shortened(str(error))
         raise InputError(f"{path.name} cannot be read as glTF ({reason}); export it again") from error
 
 
-def _marked(path: Path) -> MarkedFile | None:
+def _mark(path: Path) -> MarkedFile | None:
     document, binary = container(read_bytes(path, DEFAULT_LIMITS), DEFAULT_LIMITS)
     nodes = tuple(_walk(document))
     root = next((n for n in nodes if "objects" in (as_mapping(n.extras.get(MARK)) or {})), None)

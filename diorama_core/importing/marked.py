@@ -55,7 +55,7 @@ class MarkedFile:
 def as_mapping(value: object) -> Mapping[str, Any] | None:
     """A mark as a mapping: files keep it as JSON text, some programs turn it into a table; None when it is neither."""
     if isinstance(value, str):
-        value = _parsed(value)
+        value = _parse(value)
     return value if isinstance(value, Mapping) else None
 
 
@@ -67,7 +67,7 @@ def as_bytes(value: object) -> bytes | None:
         return None
 
 
-def _parsed(text: str) -> object:
+def _parse(text: str) -> object:
     """JSON out of a foreign file; None when it is none."""
     try:
         return parse_json(text, "a mark", InputError)
@@ -78,5 +78,5 @@ def _parsed(text: str) -> object:
 def as_ids(value: object) -> frozenset[str] | None:
     """A list of ids, as JSON text or as a list; None when it is neither."""
     if isinstance(value, str):
-        value = _parsed(value)
+        value = _parse(value)
     return frozenset(str(v) for v in value) if isinstance(value, list) else None

@@ -4,7 +4,7 @@ Floor and ceiling are where heights are densest. Walls are lines along the room'
 the lines divide the plan into cells, and those that were scanned are the room (as in Mura et al., Automatic room
 detection and reconstruction in cluttered indoor environments, 2014, for two axes). What is left is split where it does
 not touch, and where things lie on furniture (`scanned_tops`). Doors and windows are holes and leaves in walls
-(`scanned_openings`).
+(`find_openings`).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from diorama_core.importing.measured_types import (
 )
 from diorama_core.importing.point_cloud import PointCloud
 from diorama_core.importing.scanned_boxes import OFF_M, ScannedRoom, boxes_in, is_part_of, rugs_in
-from diorama_core.importing.scanned_openings import scanned_openings
+from diorama_core.importing.scanned_openings import find_openings
 from diorama_core.importing.scene_frame import LEVEL_M, likely_up, sharpness
 from diorama_core.scene.types import yaw_rotation
 
@@ -55,7 +55,7 @@ SCANNED_SHARE = 0.45
 """Scanned share from which a cell of the plan belongs to the room."""
 
 
-def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
+def measure_cloud(cloud: PointCloud) -> MeasuredRoom:
     """Walls, floor and boxes of a cloud; the world is +Z up, the floor at 0, axes along x and y.
 
     Raises:
@@ -64,7 +64,7 @@ def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
     _spread(cloud.points, 2 * MAX_REACH_M)  # whichever way they are turned: a diagonal is shorter than two sides
     T = np.eye(4)
     T[:3, :3] = _upright_axes(cloud)
-    points = _thinned(cloud.points @ T[:3, :3].T)
+    points = _thin(cloud.points @ T[:3, :3].T)
     levels = _levels(points[:, 2])
     floor_m, top_m = levels.floor_m, levels.top_m - levels.floor_m
     points = points - [0.0, 0.0, floor_m]
@@ -75,7 +75,7 @@ def measured_cloud(cloud: PointCloud) -> MeasuredRoom:
     outline = _outline(points, top_m, walls_alone=not (levels.floored or levels.closed))
     room = ScannedRoom(outline, top_m)
     walls, ring = _walls(room), np.asarray(outline.exterior.coords)[:-1]
-    openings = scanned_openings(points, walls, ring)
+    openings = find_openings(points, walls, ring)
     boxes, left_out = boxes_in(points, room)
     boxes = (*boxes, *rugs_in(points, room))
     boxes = tuple(b for b in boxes if not any(is_part_of(b, o) for o in openings))
@@ -100,7 +100,7 @@ def _upright_axes(cloud: PointCloud) -> Float[np.ndarray, "3 3"]:
     return np.stack([x, np.cross(z, x), z])
 
 
-def _thinned(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
+def _thin(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
     """One point for each occupied voxel, so that what was scanned from near does not outweigh the rest."""
     low, high = _spread(points, MAX_REACH_M)
     points = points[((points > low - 0.5) & (points < high + 0.5)).all(axis=1)]

@@ -20,8 +20,8 @@ from diorama_core.importing.storeys import (
     floor_planes,
     floors_below,
     inner_face,
-    measured_storeys,
     rooms_of_floors,
+    storeys_of,
 )
 from diorama_core.library.kinds import is_possible
 from diorama_core.library.record import Shape, ShapeLibrary
@@ -39,13 +39,13 @@ THINNEST_M = 0.005
 """Of a face of a wall: what has no thickness is no solid."""
 
 
-def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
+def open_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
     """The scene: planes exactly where they were measured, and in every box the shape that fits it best.
 
     A front that looks into a wall it touches is turned round. Boxes stand on the floor, on what is right below them, or
     hang on the wall that they touch.
     """
-    storeys = measured_storeys(room)
+    storeys = storeys_of(room)
     walls = tuple(inner_face(w, storeys) for w in room.walls)
     walls = _half_as_thick_as_apart(walls)
     walls, unused = _with_passages(walls, room.openings)
@@ -59,7 +59,7 @@ def opened_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
     ]
     names = _Names()
     holders = [
-        _held(index, boxes, planes, floors[k] if k is not None and floors else None) for index, k in enumerate(below)
+        _holder(index, boxes, planes, floors[k] if k is not None and floors else None) for index, k in enumerate(below)
     ]
     objects = [_object(names, box, known_supports, library) for box, known_supports in zip(boxes, holders, strict=True)]
     ids = [o.id for o in objects]
@@ -154,7 +154,7 @@ def _is_before_wall(wall: Plane, point: Float[np.ndarray, "3"], reach_m: float) 
     return bool(span.min() - reach_m < point @ along < span.max() + reach_m)
 
 
-def _held(index: int, boxes: Sequence[MeasuredBox], planes: Sequence[Plane], floor: Plane | None) -> str:
+def _holder(index: int, boxes: Sequence[MeasuredBox], planes: Sequence[Plane], floor: Plane | None) -> str:
     """What holds a box up: the floor, the ceiling, a wall, or the number of another box."""
     box = boxes[index]
     low, high = (float(box.centre[2] + side * box.size_m[2] / 2) for side in (-1, 1))
@@ -248,13 +248,13 @@ def _wall_of(opening: MeasuredOpening, walls: Sequence[Plane]) -> Plane | None:
 def _half_as_thick_as_apart(walls: Sequence[Plane]) -> tuple[Plane, ...]:
     """Walls of which both faces were measured: each face has the half of what is between them."""
 
-    def halved(wall: Plane) -> Plane:
+    def halve(wall: Plane) -> Plane:
         low, high = wall.polygon.min(axis=0), wall.polygon.max(axis=0)
         points = [low + share * (high - low) for share in (0.25, 0.5, 0.75)]
         gaps = [wall.offset - float(wall.normal @ f.centre) for p in points for f in faces_behind(wall, p, walls)]
         return replace(wall, thickness=max(min(gaps) / 2, THINNEST_M)) if gaps else wall
 
-    return tuple(halved(w) for w in walls)
+    return tuple(halve(w) for w in walls)
 
 
 def _is_other_side(

@@ -12,7 +12,7 @@ from jaxtyping import UInt8
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import InputError
 from diorama_core.importing.marked import MarkedFile
-from diorama_core.importing.restore import restored
+from diorama_core.importing.restore import restore
 from diorama_core.perception.inputs.photos.reading import read_photo
 from diorama_core.perception.inputs.source import read_source
 from diorama_core.scene.types import Architecture, Scene
@@ -48,7 +48,7 @@ class Opened:
 
 def open_marked(file: MarkedFile) -> Opened:
     """The scene that Diorama wrote, as the file has it now; see `restore`."""
-    restored_scene = restored(file)
+    restored_scene = restore(file)
     planes, textures = [], dict(file.material_pictures)
     for plane in restored_scene.scene.architecture.planes:
         picture = file.pictures.get(plane.id)

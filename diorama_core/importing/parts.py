@@ -114,7 +114,7 @@ def split_scene(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tup
             if nodes:
                 parts.append(_part(scene, node, nodes, node, to_world))
             waiting += reversed(loose)
-    return joined_flat_parts(parts)
+    return join_flat_parts(parts)
 
 
 def _own(children: dict[str, Sequence[str]], node: str, boxes: Mapping[str, object]) -> list[str]:
@@ -191,7 +191,7 @@ MIN_SHARE = 0.3
 """Smallest covered share of a face; a mat on a table covers less and is an object of its own."""
 
 
-def joined_flat_parts(parts: Sequence[Part]) -> tuple[Part, ...]:
+def join_flat_parts(parts: Sequence[Part]) -> tuple[Part, ...]:
     """The parts, those without thickness that cover a face of another one (not its foot) joined to it."""
     bounds = [p.whole.bounds for p in parts]
     owners = {k: owner for k in range(len(parts)) if (owner := _owner(k, bounds)) is not None}

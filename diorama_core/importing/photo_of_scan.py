@@ -70,7 +70,7 @@ def with_photo_of_scan(
             "objects that were scanned, such as chairs, tables, cabinets, doors and windows"
         )
     met = {box: scene.objects[thing] for thing, box in camera.met}
-    marked = replace(artefacts["inputs"], boxes=tuple(_told(o, met.get(k)) for k, o in enumerate(objects)))
+    marked = replace(artefacts["inputs"], boxes=tuple(_label(o, met.get(k)) for k, o in enumerate(objects)))
     seen = tuple((item.id, objects[box].box) for box, item in met.items())
     added = with_photo(
         scene,
@@ -145,7 +145,7 @@ def _to_axes(scene: Scene) -> Float[np.ndarray, "4 4"]:
     return T
 
 
-def _told(item: DetectedObject, scanned: SceneObject | None) -> LabelledBox:
+def _label(item: DetectedObject, scanned: SceneObject | None) -> LabelledBox:
     """A marked thing; what nobody named is called as the scan calls it: a loose word that its picture explains."""
     if scanned is None or item.category != UNKNOWN.name:
         return LabelledBox(item.box, item.category, item.label)

@@ -61,11 +61,11 @@ class PointCloud:
         """The cloud of a file whose unit is known to be another."""
         factor = unit_m / self.unit_m
         notes = tuple(note for note in self.notes if not note.startswith(GUESSED))
-        photos = tuple(_scaled(photo, factor) for photo in self.photos)
+        photos = tuple(_scale(photo, factor) for photo in self.photos)
         return replace(self, points=self.points * factor, notes=notes, photos=photos, unit_m=unit_m)
 
 
-def _scaled(photo: ScanPhoto, factor: float) -> ScanPhoto:
+def _scale(photo: ScanPhoto, factor: float) -> ScanPhoto:
     T = photo.camera.T_world_camera.copy()
     T[:3, 3] *= factor
     return replace(photo, camera=Camera(photo.camera.intrinsics, T), unit_m=photo.unit_m * factor)

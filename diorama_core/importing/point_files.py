@@ -214,7 +214,7 @@ def _form_of(head: FileHead) -> PointForm | None:
 def _from_ply(path: Path) -> PointCloud:
     with path.open("rb") as stream:
         is_diorama = OWN_PLY in stream.read(4096)
-    loaded = _loaded(path)
+    loaded = _load(path)
     if is_diorama:
         return PointCloud(points_of_mesh(loaded), UP_Z)
     if isinstance(loaded, trimesh.Trimesh) and len(loaded.vertices):
@@ -222,7 +222,7 @@ def _from_ply(path: Path) -> PointCloud:
     return to_metres(PointCloud(points_of_mesh(loaded), None))
 
 
-def _loaded(path: Path) -> object:
+def _load(path: Path) -> object:
     """A mesh or a point cloud; what it refers to is read below its own folder only."""
     references = References(path.parent, path.parent, DEFAULT_LIMITS)
     content = io.BytesIO(read_bytes(path, MAX_BYTES, InputError, "thin it out first"))
@@ -277,7 +277,7 @@ def _from_e57(path: Path) -> PointCloud:
 def _from_app_mesh(folder: Path) -> PointCloud:
     mesh = next(_meshes_in(folder))
     up = None if mesh.suffix == ".ply" else UP_Y  # glTF by its standard, the apps' OBJ as ARKit's world
-    return PointCloud(points_of_mesh(_loaded(mesh)), up)
+    return PointCloud(points_of_mesh(_load(mesh)), up)
 
 
 def _meshes_in(folder: Path) -> Iterator[Path]:
@@ -289,7 +289,7 @@ def _is_ply(head: FileHead) -> bool:
     return head.head.startswith(b"ply") or (head.suffix == ".ply" and not head.is_folder)
 
 
-def _framed(form: FrameForm) -> PointForm:
+def _frame_form(form: FrameForm) -> PointForm:
     return PointForm(form.name, "a folder, or its zip", form.tells, partial(cloud_of_frames, form=form))
 
 
@@ -318,7 +318,7 @@ POINT_FORMS = (
     PointForm(
         "points as bare floats, as of KITTI", ".bin", is_float_dump, partial(_from_array, read_float_dump, "")
     ),
-    *(_framed(form) for form in (*FRAME_FORMS, *DATA_SET_FORMS)),
+    *(_frame_form(form) for form in (*FRAME_FORMS, *DATA_SET_FORMS)),
     PointForm(
         "the mesh of a scanner app", "a folder, or its zip",
         lambda h: h.is_folder and "scene.json" not in h.names and any(_meshes_in(h.path)), _from_app_mesh,

@@ -34,7 +34,7 @@ class Restored:
     """One line each: what was moved, deleted, copied or hung elsewhere in the file."""
 
 
-def restored(file: MarkedFile) -> Restored:
+def restore(file: MarkedFile) -> Restored:
     """The scene of a marked file.
 
     Raises:
@@ -49,7 +49,7 @@ def restored(file: MarkedFile) -> Restored:
     changes += copies
     for node, object_id in zip(file.nodes, ids, strict=True):
         if object_id is not None:
-            scene, remarks = _moved(scene, object_id, node)
+            scene, remarks = _move(scene, object_id, node)
             changes += remarks
     scene, remarks = _without_deleted(scene, file)
     changes += remarks
@@ -111,7 +111,7 @@ def _distance(scene: Scene, node: ObjectNode) -> float:
     return float(np.abs(node.M_world_shape - scene.object(node.id).pose.matrix).max())
 
 
-def _moved(scene: Scene, object_id: str, node: ObjectNode) -> tuple[Scene, list[str]]:
+def _move(scene: Scene, object_id: str, node: ObjectNode) -> tuple[Scene, list[str]]:
     item = scene.object(object_id)
     pose, forced = pose_of(node.M_world_shape)
     if np.abs(replace(item, pose=pose).corners_world - item.corners_world).max() < STILL_M:
@@ -120,7 +120,7 @@ def _moved(scene: Scene, object_id: str, node: ObjectNode) -> tuple[Scene, list[
     if forced:
         remarks.append(f"{item.label} ({object_id}) is sheared or mirrored in the file: the nearest pose was taken")
     T_new_old = pose.T_world_object @ np.linalg.inv(item.pose.T_world_object)
-    return _replaced(scene, replace(_with_candidates_moved(item, T_new_old), pose=pose)), remarks
+    return _replace(scene, replace(_with_candidates_moved(item, T_new_old), pose=pose)), remarks
 
 
 def _with_candidates_moved(item: SceneObject, T_new_old: Float[np.ndarray, "4 4"]) -> SceneObject:
@@ -184,5 +184,5 @@ def _room_and_camera(scene: Scene, file: MarkedFile) -> tuple[Scene, list[str]]:
     return scene, remarks
 
 
-def _replaced(scene: Scene, item: SceneObject) -> Scene:
+def _replace(scene: Scene, item: SceneObject) -> Scene:
     return replace(scene, objects=tuple(item if o.id == item.id else o for o in scene.objects))

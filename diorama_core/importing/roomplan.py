@@ -28,10 +28,10 @@ from diorama_core.importing.measured_types import (
 from diorama_core.importing.roomplan_parts import (
     MAX_PARTS,
     box_of,
-    joined_floors,
+    join_floors,
     kinds_of,
-    moved,
-    named_floors,
+    move,
+    name_floors,
     spoken,
     storey_notes,
     without_unusable,
@@ -77,7 +77,7 @@ def _from_json(path: Path) -> MeasuredRoom | None:
     if not rooms:
         return None
     try:
-        document = next(iter(rooms.values())) if len(rooms) == 1 else _placed_together(rooms)
+        document = next(iter(rooms.values())) if len(rooms) == 1 else _combine(rooms)
     except (LookupError, TypeError, ValueError, AttributeError) as error:
         raise InputError(
             f"{path.name}: a room has no place in the home ({shortened(str(error))}); export its rooms together"
@@ -96,8 +96,8 @@ def _from_json(path: Path) -> MeasuredRoom | None:
         raise InputError(
             f"{path.name}: a wall or an object makes no sense ({shortened(str(error))}); export the scan again"
         ) from error
-    joined = joined_floors([Polygon(f[:, :2]) for f in floors], [float(f[:, 2].mean()) for f in floors])
-    joined = named_floors(joined, [(name, at) for name, at in sections if name], walls)
+    joined = join_floors([Polygon(f[:, :2]) for f in floors], [float(f[:, 2].mean()) for f in floors])
+    joined = name_floors(joined, [(name, at) for name, at in sections if name], walls)
     unsure = sum(box.confidence < CONFIDENCE["medium"] for box in boxes)
     curved = sum(row.get("curve") is not None for row in names["walls"])
     notes = [f"RoomPlan was unsure of {unsure} of {len(boxes)} objects"] if unsure else []
@@ -105,7 +105,7 @@ def _from_json(path: Path) -> MeasuredRoom | None:
     return MeasuredRoom(walls, boxes, openings, joined, (*notes, *storey_notes(joined), *left_out))
 
 
-def _placed_together(rooms: Mapping[Path, Mapping[str, Any]]) -> Mapping[str, Any]:
+def _combine(rooms: Mapping[Path, Mapping[str, Any]]) -> Mapping[str, Any]:
     """Captured rooms as one document, in the frame of the home; a room without a named section has its file's name."""
     whole: dict[str, list[Any]] = {key: [] for key in ("walls", "objects", "floors", "sections", *_SURFACES)}
     for path, room in rooms.items():
@@ -120,7 +120,7 @@ def _placed_together(rooms: Mapping[Path, Mapping[str, Any]]) -> Mapping[str, An
         called = path.parent.name if path.stem == "room" else path.stem
         middles = [np.mean(_outline(f), axis=0) @ Z_UP[:3, :3] for f in room.get("floors") or []]
         named = named or [{"label": called, "center": middle.tolist()} for middle in middles]
-        whole["sections"] += [{**s, "center": moved(T, _point(s["center"])).tolist()} for s in named]
+        whole["sections"] += [{**s, "center": move(T, _point(s["center"])).tolist()} for s in named]
     return whole
 
 
@@ -183,4 +183,4 @@ def _outline(row: Mapping[str, Any]) -> Float[np.ndarray, "n 3"]:
         local = np.array([[x * width / 2, y * length / 2, 0.0] for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
     if not np.isfinite(local).all():
         raise ValueError("its corners are no places")
-    return moved(_matrix(row), local)
+    return move(_matrix(row), local)

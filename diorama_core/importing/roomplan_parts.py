@@ -102,12 +102,12 @@ def box_of(
     return MeasuredBox(spoken(word), kinds, R, M[:3, 3].copy(), np.maximum(size[[2, 0, 1]], 0.01), confidence)
 
 
-def moved(M: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+def move(M: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
     """Points under a rigid motion."""
     return points @ M[:3, :3].T + M[:3, 3]
 
 
-def joined_floors(floors: Sequence[Polygon], heights_m: Sequence[float]) -> tuple[MeasuredFloor, ...]:
+def join_floors(floors: Sequence[Polygon], heights_m: Sequence[float]) -> tuple[MeasuredFloor, ...]:
     """Floors that touch at about one height are one; others are rooms and storeys of their own, the lowest first."""
     joined: list[MeasuredFloor] = []
     left = sorted(zip(heights_m, floors, strict=True), key=lambda row: row[0])
@@ -125,7 +125,7 @@ def joined_floors(floors: Sequence[Polygon], heights_m: Sequence[float]) -> tupl
     return tuple(joined)
 
 
-def named_floors(
+def name_floors(
     floors: Sequence[MeasuredFloor],
     sections: Sequence[tuple[str, Float[np.ndarray, "3"]]],
     walls: Sequence[MeasuredWall],

@@ -25,8 +25,8 @@ from diorama_core.importing.roomplan_parts import (
     KINDS,
     MAX_PARTS,
     box_of,
-    joined_floors,
-    moved,
+    join_floors,
+    move,
     storey_notes,
     without_unusable,
 )
@@ -58,7 +58,7 @@ def _from_stage(stage: Any, path: Path) -> MeasuredRoom | None:
     for mesh in meshes:
         word = mesh.word.lower()
         size, at = mesh.high - mesh.low, mesh.M_world.copy()
-        at[:3, 3] = moved(mesh.M_world, (mesh.low + mesh.high) / 2)
+        at[:3, 3] = move(mesh.M_world, (mesh.low + mesh.high) / 2)
         if word == "wall":
             walls.append(_usd_wall(at, size, len(walls) + 1))
         elif word in get_args(OpeningKind):
@@ -66,7 +66,7 @@ def _from_stage(stage: Any, path: Path) -> MeasuredRoom | None:
             openings.append(MeasuredOpening(kind, at[:3, 3], float(size[[0, 2]].max()), float(size[1])))
         elif word in known:
             boxes.append(box_of(known[word], KINDS[known[word]], at, size, 1.0))
-    joined = joined_floors([f.outline for f in floors], [f.top_m for f in floors])
+    joined = join_floors([f.outline for f in floors], [f.top_m for f in floors])
     upright, left_out = without_unusable(boxes)
     return MeasuredRoom(tuple(walls), upright, tuple(openings), joined, (*storey_notes(joined), *left_out))
 
@@ -77,7 +77,7 @@ def _usd_wall(at: Float[np.ndarray, "4 4"], size: Float[np.ndarray, "3"], number
     corners = np.zeros((4, 3))
     corners[:, along] = np.array([-1, 1, 1, -1]) * size[along] / 2
     corners[:, 1] = np.array([-1, -1, 1, 1]) * size[1] / 2
-    return MeasuredWall(f"wall-{number}", moved(at, corners), float(size[thin]))
+    return MeasuredWall(f"wall-{number}", move(at, corners), float(size[thin]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,14 +122,14 @@ def _meshes(stage: Any) -> Iterator[_Mesh]:
         M[:3, :3] /= np.maximum(lengths, 1e-12)
         M[:3, 3] *= metres
         if np.allclose(M[:3, :3], np.eye(3), atol=1e-6):
-            M, points = _unbaked(M, points)
+            M, points = _unbake(M, points)
         M = Z_UP @ M
-        placed = moved(M, points)
+        placed = move(M, points)
         outline = _outline_of(placed, mesh.GetFaceVertexCountsAttr().Get(), mesh.GetFaceVertexIndicesAttr().Get())
         yield _Mesh(str(prim.GetPath()), M, points.min(axis=0), points.max(axis=0), outline, float(placed[:, 2].max()))
 
 
-def _unbaked(
+def _unbake(
     M: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "n 3"]
 ) -> tuple[Float[np.ndarray, "4 4"], Float[np.ndarray, "n 3"]]:
     """The axes of a mesh whose points are in the room's: those of the smallest rectangle around it, from above."""

@@ -2,7 +2,7 @@
 
 Rugs in the points of a scan: places where the floor is a little higher, level, and rectangular.
 
-A rug is thinner than what `measured_cloud` leaves to the floor. It is seen where a scan is finer than the rug is thick;
+A rug is thinner than what `measure_cloud` leaves to the floor. It is seen where a scan is finer than the rug is thick;
 furniture on it hides a part, so that its rectangle need not be full, but no bare floor may be inside.
 
 Furniture apart from what lies on it, in the points of a scan.
@@ -119,7 +119,7 @@ def rugs_in(points: Float[np.ndarray, "n 3"], room: ScannedRoom) -> tuple[Measur
     import shapely
 
     inside = points[shapely.contains_xy(room.outline.buffer(-OFF_M), points[:, 0], points[:, 1])]
-    return tuple(replace(_box(rug, room), kinds=dict.fromkeys(sorted(RUGS), 1.0)) for rug in scanned_rugs(inside))
+    return tuple(replace(_box(rug, room), kinds=dict.fromkeys(sorted(RUGS), 1.0)) for rug in find_rugs(inside))
 
 
 def _spacing(points: Float[np.ndarray, "n 3"]) -> float:
@@ -235,7 +235,7 @@ class RugSettings:
 SETTINGS = RugSettings()
 
 
-def scanned_rugs(points: Float[np.ndarray, "n 3"]) -> list[Float[np.ndarray, "_ 3"]]:
+def find_rugs(points: Float[np.ndarray, "n 3"]) -> list[Float[np.ndarray, "_ 3"]]:
     """Points of each rug, the largest first.
 
     Args:

@@ -81,11 +81,11 @@ def with_scanned_kinds(room: MeasuredRoom, library: ShapeLibrary, *, look: bool 
     known = dict(zip(scanned, together, strict=True))
     return replace(
         room,
-        boxes=tuple(_fitted(box, known[k], library) if k in known else box for k, box in enumerate(room.boxes)),
+        boxes=tuple(_fit(box, known[k], library) if k in known else box for k, box in enumerate(room.boxes)),
     )
 
 
-def _fitted(box: MeasuredBox, kinds: Mapping[str, float], library: ShapeLibrary) -> MeasuredBox:
+def _fit(box: MeasuredBox, kinds: Mapping[str, float], library: ShapeLibrary) -> MeasuredBox:
     """A box with its kinds, and its front and shapes as its points say."""
     kind = max(kinds, key=lambda k: (kinds[k], k))
     fits, quarters = ScannedSurface.of(box).fits(kind, library)
@@ -253,7 +253,7 @@ class ScannedSurface:
             return [FAR_M]
         cost = [size_cost(shape.size_m, self.size_m), size_cost(shape.size_m, self.size_m[[1, 0, 2]])]
         farther = [FIT_SIGMA_M * (c - min(cost)) for c in cost]
-        return [self._misfit(_turned(unit, q) * self.size_m) + farther[q % 2] for q in range(4)]
+        return [self._misfit(_turn(unit, q) * self.size_m) + farther[q % 2] for q in range(4)]
 
     def _misfit(self, surface: Float[np.ndarray, "m 3"]) -> float:
         distance_m = np.minimum(cKDTree(surface).query(self.points)[0], FAR_M).mean()
@@ -272,7 +272,7 @@ def unit_surface(shape: Shape, library: ShapeLibrary) -> Float[np.ndarray, "m 3"
     return np.asarray((points - (low + high) / 2) / np.maximum(high - low, 1e-6))
 
 
-def _turned(points: Float[np.ndarray, "m 3"], quarters: int) -> Float[np.ndarray, "m 3"]:
+def _turn(points: Float[np.ndarray, "m 3"], quarters: int) -> Float[np.ndarray, "m 3"]:
     """Turned about up by quarters, counter-clockwise seen from above."""
     x, y, z = points.T
     for _ in range(quarters):

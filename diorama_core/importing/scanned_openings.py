@@ -67,7 +67,7 @@ class _Rectangle:
     high: int
 
 
-def scanned_openings(
+def find_openings(
     points: Float[np.ndarray, "n 3"], walls: Sequence[MeasuredWall], floor_outline: Float[np.ndarray, "k 2"]
 ) -> tuple[MeasuredOpening, ...]:
     """Openings of a room's walls.
@@ -111,17 +111,17 @@ def _grid(local: Float[np.ndarray, "n 3"], length_m: float, height_m: float) -> 
         return None
     shape = (max(1, round(height_m / cell)), max(1, round(length_m / cell)))
 
-    def counted(chosen: Float[np.ndarray, "k 3"], weights: Float[np.ndarray, "k"]) -> Float[np.ndarray, "h w"]:
+    def tally(chosen: Float[np.ndarray, "k 3"], weights: Float[np.ndarray, "k"]) -> Float[np.ndarray, "h w"]:
         rows = np.minimum((chosen[:, 1] / cell).astype(int), shape[0] - 1)
         columns = np.minimum((chosen[:, 0] / cell).astype(int), shape[1] - 1)
         return np.bincount(rows * shape[1] + columns, weights, shape[0] * shape[1]).astype(np.float64).reshape(shape)
 
-    count = counted(on_wall, np.ones(len(on_wall)))
-    relief = counted(on_wall, on_wall[:, 2]) / np.maximum(count, 1.0)
+    count = tally(on_wall, np.ones(len(on_wall)))
+    relief = tally(on_wall, on_wall[:, 2]) / np.maximum(count, 1.0)
     # Not the floor, the ceiling and the walls beside it, which are before every wall.
     amid = ((local[:, :2] > ON_WALL_M) & (local[:, :2] < np.array([length_m, height_m]) - ON_WALL_M)).all(axis=1)
     before = local[amid & (local[:, 2] >= ON_WALL_M) & (local[:, 2] < BEFORE_M)]
-    hidden = _grown(counted(before, np.ones(len(before))) > 0, SQUARE_CELLS)
+    hidden = _grow(tally(before, np.ones(len(before))) > 0, SQUARE_CELLS)
     return _Grid(cell, count > 0, cv2.medianBlur(relief.astype(np.float32), 3).astype(np.float64), hidden)
 
 
@@ -212,6 +212,6 @@ def _overlap(a: _Rectangle, b: _Rectangle) -> bool:
     return a.left < b.right and b.left < a.right and a.low < b.high and b.low < a.high
 
 
-def _grown(cells: Bool[np.ndarray, "h w"], steps: int) -> Bool[np.ndarray, "h w"]:
+def _grow(cells: Bool[np.ndarray, "h w"], steps: int) -> Bool[np.ndarray, "h w"]:
     grown: Bool[np.ndarray, "h w"] = cv2.dilate(cells.astype(np.uint8), np.ones((steps, steps), np.uint8)) > 0
     return grown

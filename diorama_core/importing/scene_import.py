@@ -9,9 +9,9 @@ from pathlib import Path
 
 from diorama_core.errors import LibraryError
 from diorama_core.importing.foreign import scene_of_parts, take_missing_shapes
-from diorama_core.importing.forms import Content, SceneParts, told
+from diorama_core.importing.forms import Content, SceneParts, open_form
 from diorama_core.importing.marked import MarkedFile
-from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_room import open_room
 from diorama_core.importing.measured_types import MeasuredRoom
 from diorama_core.importing.opening import Opened, open_marked
 from diorama_core.importing.point_cloud import PointCloud
@@ -57,9 +57,9 @@ def import_scene(
     """
     with _read(path, progress, unit_m) as (place, content):
         if isinstance(content, MarkedFile):
-            return _imported_mark(place, shapes, content, library_name, progress)
+            return _import_mark(place, shapes, content, library_name, progress)
         name = library_name or "built-in"
-        opened = _opened(place, content, shapes, name, progress)
+        opened = _open(place, content, shapes, name, progress)
     return Imported(opened, f"{name}+{OWN_SHAPES}" if isinstance(content, SceneParts) else name)
 
 
@@ -80,19 +80,19 @@ def read_scene(path: Path, shapes: Path, known: frozenset[str], progress: Progre
     with _read(path, progress) as (place, content):
         if isinstance(content, MarkedFile):
             return _with_shapes(place, shapes, content, known, progress)
-        return _opened(place, content, shapes, "built-in", progress)
+        return _open(place, content, shapes, "built-in", progress)
 
 
 @contextmanager
 def _read(path: Path, progress: Progress, unit_m: float | None = None) -> Iterator[tuple[Path, Content]]:
     """Where a file lies, unpacked where it was an archive, and what is in it."""
     progress.report(0.0, f"reading {path.name}")
-    with told(path) as (form, place):
+    with open_form(path) as (form, place):
         progress.report(0.0, f"{path.name} is read as {form.name}")
         yield place, form.read(place, progress, unit_m)
 
 
-def _opened(path: Path, content: Content, shapes: Path | None, library_name: str, progress: Progress) -> Opened:
+def _open(path: Path, content: Content, shapes: Path | None, library_name: str, progress: Progress) -> Opened:
     """A scene of what another program wrote or a scanner measured."""
     if isinstance(content, SceneParts):
         opened = scene_of_parts(content.parts, path, _sink(shapes), progress)
@@ -101,14 +101,14 @@ def _opened(path: Path, content: Content, shapes: Path | None, library_name: str
     if isinstance(content, PointCloud):
         return _room_of_points(content, library)
     assert isinstance(content, MeasuredRoom)
-    return opened_room(content, library)
+    return open_room(content, library)
 
 
-def _imported_mark(
+def _import_mark(
     path: Path, shapes: Path | None, marked: MarkedFile, library_name: str | None, progress: Progress
 ) -> Imported:
     """The scene that Diorama wrote, and the names of the libraries that have its shapes."""
-    name = library_name or _known(str(marked.provenance.get("library", "built-in")))
+    name = library_name or _library_name(str(marked.provenance.get("library", "built-in")))
     known, of_person = _ids(name), _ids(OWN) if OWN in stored_libraries() else frozenset[str]()
     opened = _with_shapes(path, shapes, marked, known | of_person, progress)
     used = {base_id(o.shape_id) for o in opened.scene.objects}
@@ -138,7 +138,7 @@ def _ids(library: str) -> frozenset[str]:
     return frozenset(s.id for s in open_library(library).shapes())
 
 
-def _known(name: str) -> str:
+def _library_name(name: str) -> str:
     """The library of that name where this machine has it; otherwise the built-in one, and shapes come from the file."""
     try:
         open_library(name)
@@ -149,7 +149,7 @@ def _known(name: str) -> str:
 
 def _room_of_points(cloud: PointCloud, library: ShapeLibrary) -> Opened:
     # OpenCV and SciPy: the editor starts without them.
-    from diorama_core.importing.measured_cloud import measured_cloud
+    from diorama_core.importing.measured_cloud import measure_cloud
     from diorama_core.importing.scanned_kinds import with_scanned_kinds
 
-    return opened_room(with_scanned_kinds(measured_cloud(cloud), library), library)
+    return open_room(with_scanned_kinds(measure_cloud(cloud), library), library)

@@ -38,7 +38,7 @@ class Storey:
     name: str = ""
 
 
-def measured_storeys(room: MeasuredRoom) -> tuple[Storey, ...]:
+def storeys_of(room: MeasuredRoom) -> tuple[Storey, ...]:
     """The floors of a room: as measured, or one that the walls enclose, or one around everything."""
     measured = [Storey(Polygon(f.outline), f.height_m, f.name) for f in room.floors]
     sound = tuple(s for s in measured if s.outline is not None and s.outline.is_valid and s.outline.area > 0)
@@ -52,7 +52,7 @@ def measured_storeys(room: MeasuredRoom) -> tuple[Storey, ...]:
 def floor_planes(storeys: Sequence[Storey]) -> tuple[Plane, ...]:
     """A plane for each floor; none where nothing tells its outline."""
     return tuple(
-        Plane(_numbered("floor", k), "floor", np.column_stack([ring, np.full(len(ring), s.height_m)]))
+        Plane(_number("floor", k), "floor", np.column_stack([ring, np.full(len(ring), s.height_m)]))
         for k, s in enumerate(storeys)
         if s.outline is not None
         for ring in (_ring(s.outline),)
@@ -97,7 +97,7 @@ def ceiling_planes(storeys: Sequence[Storey], walls: Sequence[Plane]) -> tuple[t
             continue
         ring = _ring(storey.outline)[::-1]
         polygon = np.column_stack([ring, np.full(len(ring), float(np.median(full)))])
-        planes.append(Plane(_numbered("ceiling", number), "ceiling", polygon))
+        planes.append(Plane(_number("ceiling", number), "ceiling", polygon))
     return tuple(planes), tuple(dict.fromkeys(notes))
 
 
@@ -124,7 +124,7 @@ def floors_below(boxes: Sequence[MeasuredBox], storeys: Sequence[Storey]) -> lis
     return floor_under(feet, outlines, [s.height_m for s in storeys])
 
 
-def _numbered(word: str, index: int) -> str:
+def _number(word: str, index: int) -> str:
     return word if index == 0 else f"{word}-{index + 1}"
 
 

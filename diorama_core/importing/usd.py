@@ -22,10 +22,10 @@ def read_marked_usd(path: Path) -> MarkedFile | None:
     """
     stage = opened_stage(path)
     with usd_errors(path):
-        return _marked(stage)
+        return _mark(stage)
 
 
-def _marked(stage: Any) -> MarkedFile | None:
+def _mark(stage: Any) -> MarkedFile | None:
     from pxr import Usd, UsdGeom
 
     root = next((p for p in stage.Traverse() if p.HasAttribute("diorama:scene")), None)

@@ -24,19 +24,19 @@ from diorama_core.scene.support import check_scene, descendants
 from diorama_core.scene.types import Pose, Scene, SceneObject
 from diorama_core.synthesis import furnished_room
 from diorama_core.text.customs import DECOR
-from diorama_core.text.edit_places import lifted_onto
-from diorama_core.text.placed_rows import PlacedRows, placed_rows
-from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, understood_prompt
+from diorama_core.text.edit_places import lift_onto
+from diorama_core.text.placed_rows import PlacedRows, place_rows
+from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, read_prompt
 from diorama_core.text.requested_relations import (
     is_sat_around,
+    place_seat,
     placement_order,
     row_relations,
-    seated,
     stands_between,
     targets_of,
     usual_relations,
 )
-from diorama_core.text.requested_room import dressed, empty_room, requested_shapes, with_essentials
+from diorama_core.text.requested_room import dress, empty_room, shapes_for, with_essentials
 
 TRIES = 4
 """Rooms begun anew, each a little larger, until every wish is met."""
@@ -60,7 +60,7 @@ class Composed:
     """Categories that the room has because rooms of its kind do."""
 
 
-def composed_room(
+def compose_room(
     prompt: str,
     library: ShapeLibrary,
     seed: int = 0,
@@ -79,7 +79,7 @@ def composed_room(
         request: what the prompt asks for, where somebody else understood it; by default the grammar does.
         progress: reports and cancellation.
     """
-    request = request or understood_prompt(prompt)
+    request = request or read_prompt(prompt)
     digest = int.from_bytes(hashlib.sha256(f"{seed} {prompt}".encode()).digest()[:4], "big")
     ignored = tuple(f"the library has nothing called “{words}”, so it was left out" for words in request.ignored)
     if not request.objects:
@@ -116,7 +116,7 @@ class _Composer:
     def composed(self) -> tuple[float, Composed]:
         """The room, and how much it lacks."""
         wanted, added = with_essentials(self.request)
-        shapes = {k: requested_shapes(self.library, self.rng, o, wanted) for k, o in enumerate(wanted)}
+        shapes = {k: shapes_for(self.library, self.rng, o, wanted) for k, o in enumerate(wanted)}
         self.scene = empty_room(self.request, self.library, self.rng, wanted, shapes, self.attempt)
         if any("window" in w.targets for o in wanted for w in o.wishes):
             heaters = [o.id for o in self.scene.objects if broad(o.category) == "radiator"]
@@ -142,7 +142,7 @@ class _Composer:
             self.missing[k] = request.count - len(present)
             return
         if request.rows:
-            rows = placed_rows(self.scene, request, shapes[:SHAPES_TRIED], self.positioner, self.relations)
+            rows = place_rows(self.scene, request, shapes[:SHAPES_TRIED], self.positioner, self.relations)
             if rows is not None:
                 self._take_rows(k, request, rows)
                 return
@@ -155,7 +155,7 @@ class _Composer:
             relations = self._resolved(k, request, copy, object_id)
             usual = usual_relations(self.scene, request, copy)
             usual += self._face_to_face(request, copy, placed, object_id)
-            usual = seated(self.scene, usual, request, copy) + self._side_relations(request, wanted)
+            usual = place_seat(self.scene, usual, request, copy) + self._side_relations(request, wanted)
             usual += [Relation("in middle")] if is_sat_around(request, wanted) else []
             central = stands_between(request, wanted) or is_sat_around(request, wanted)
             middle = np.array([*RoomFrame.of(self.scene).middle, 0.0]) if central else None
@@ -166,14 +166,14 @@ class _Composer:
                     object_id, f"{shape.category} {number}", shape.category, shape.id, shape.size_m, blank
                 )
                 wishes = row_relations(
-                    seated(self.scene, [r for _, r in relations], request, copy), request, copy, shape
+                    place_seat(self.scene, [r for _, r in relations], request, copy), request, copy, shape
                 )
                 spot = self.positioner.best(self.scene, item, wishes, usual=usual, others=self.relations, near=middle)
                 if spot is None:
                     continue
                 self.scene = self.positioner.put(self.scene, item, spot)
-                self.scene = dressed(self.scene, object_id, shape, request.appearance)
-                self.scene = lifted_onto(self.scene, object_id)
+                self.scene = dress(self.scene, object_id, shape, request.appearance)
+                self.scene = lift_onto(self.scene, object_id)
                 placed.append(object_id)
                 self.wishes[object_id] = relations
                 self.relations[object_id] = [r for _, r in relations]
@@ -186,7 +186,7 @@ class _Composer:
         self.scene, self.in_rows[k], self.ids[k] = rows.scene, rows, list(rows.ids)
         for object_id in rows.ids:
             item = self.scene.object(object_id)
-            self.scene = dressed(self.scene, object_id, self.library.shape(item.shape_id), request.appearance)
+            self.scene = dress(self.scene, object_id, self.library.shape(item.shape_id), request.appearance)
 
     def _resolved(self, k: int, request: RequestedObject, copy: int, object_id: str) -> list[tuple[Wish, Relation]]:
         """The wishes of one copy with ids in the place of categories."""
@@ -273,7 +273,7 @@ class _Composer:
         for name in DECOR[self.request.room]:
             if name in asked or name in self.request.excluded or not self.library.in_category(name):
                 continue
-            shapes = requested_shapes(self.library, self.rng, RequestedObject(name, name), wanted)
+            shapes = shapes_for(self.library, self.rng, RequestedObject(name, name), wanted)
             if name in ("picture", "mirror"):
                 shapes = tuple(s for s in shapes if s.size_m[0] < 0.08 and s.size_m[2] < 1.0)
             for shape in shapes[:SHAPES_TRIED]:

@@ -15,9 +15,9 @@ from diorama_core.library.taxonomy import broad
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene
-from diorama_core.text.edit_insert import inserted
-from diorama_core.text.edit_looks import restyled, swapped
-from diorama_core.text.edit_places import moved, resized, shifted, turned
+from diorama_core.text.edit_insert import insert
+from diorama_core.text.edit_looks import restyle, swap
+from diorama_core.text.edit_places import move, resize, shift, turn
 from diorama_core.text.edit_plan import (
     Align,
     Copy,
@@ -47,17 +47,17 @@ from diorama_core.text.edit_plan import (
     Turn,
     names_of,
 )
-from diorama_core.text.edit_room import covered, direction_of, lengthened, lit, opened_wall, wall_on
+from diorama_core.text.edit_room import cover, direction_of, lengthen, lit, open_wall, wall_on
 from diorama_core.text.edit_states import (
-    aligned,
-    copied,
-    exchanged,
-    measured,
-    outlined,
-    placed,
+    copy,
+    exchange,
+    line_up,
+    outline,
+    place_at,
     put_in_state,
-    renamed,
-    supported,
+    rename,
+    set_side,
+    support,
     wall_moved,
 )
 
@@ -79,41 +79,41 @@ class EditApplier:
         if isinstance(edit, MoveWall):
             return wall_moved(scene, edit)
         if isinstance(edit, DrawRoom):
-            return outlined(scene, edit)
+            return outline(scene, edit)
         if isinstance(edit, (Paint, RoomLength, Light, InsertOpening)):
             return self._room(scene, edit)
         if isinstance(edit, Insert):
-            done = inserted(self.positioner, scene, edit, self._relations(scene, edit.places))
+            done = insert(self.positioner, scene, edit, self._relations(scene, edit.places))
             if edit.name:
                 self.names[edit.name] = done.touched[0]
             return done
         ids = self._ids(scene, edit.objects)
         if isinstance(edit, Remove):
-            return _removed(self.positioner.library, scene, ids)
+            return _remove(self.positioner.library, scene, ids)
         if isinstance(edit, Move):
-            return moved(self.positioner, scene, ids, self._relations(scene, edit.places, ids))
+            return move(self.positioner, scene, ids, self._relations(scene, edit.places, ids))
         if isinstance(edit, Shift):
             toward = self._ids(scene, [edit.toward])[0] if edit.toward else ""
-            return shifted(self.positioner, scene, ids, edit, toward)
+            return shift(self.positioner, scene, ids, edit, toward)
         if isinstance(edit, Turn):
             toward = self._ids(scene, [edit.toward])[0] if edit.toward else ""
-            return turned(self.positioner, scene, ids, edit, toward)
+            return turn(self.positioner, scene, ids, edit, toward)
         if isinstance(edit, Restyle):
-            return restyled(self.positioner.library, scene, ids, edit.look)
+            return restyle(self.positioner.library, scene, ids, edit.look)
         if isinstance(edit, Swap):
-            return swapped(self.positioner, scene, ids, edit.what)
+            return swap(self.positioner, scene, ids, edit.what)
         if isinstance(edit, Resize):
-            return resized(self.positioner, scene, ids, edit.factor)
+            return resize(self.positioner, scene, ids, edit.factor)
         return self._object(scene, ids, edit)
 
     def _room(self, scene: Scene, edit: Paint | RoomLength | Light | InsertOpening) -> Done:
         if isinstance(edit, (Paint, InsertOpening)) and edit.behind:
             edit = edit.model_copy(update={"behind": self._ids(scene, [edit.behind])[0]})
         if isinstance(edit, Paint):
-            return covered(scene, edit)
+            return cover(scene, edit)
         if isinstance(edit, RoomLength):
-            return lengthened(scene, edit)
-        return lit(scene, edit) if isinstance(edit, Light) else opened_wall(self.positioner.library, scene, edit)
+            return lengthen(scene, edit)
+        return lit(scene, edit) if isinstance(edit, Light) else open_wall(self.positioner.library, scene, edit)
 
     def _object(
         self,
@@ -122,23 +122,23 @@ class EditApplier:
         edit: Measure | Copy | Exchange | SetState | Rename | Align | SetPlace | SetSupport,
     ) -> Done:
         if isinstance(edit, SetPlace):
-            return placed(self.positioner, scene, ids[0], edit)
+            return place_at(self.positioner, scene, ids[0], edit)
         if isinstance(edit, SetSupport):
             parent = self.names.get(edit.parent, edit.parent)
-            return supported(self.positioner, scene, ids, parent, edit.against)
+            return support(self.positioner, scene, ids, parent, edit.against)
         if isinstance(edit, Measure):
-            return measured(self.positioner, scene, ids, edit)
+            return set_side(self.positioner, scene, ids, edit)
         if isinstance(edit, Copy):
-            return copied(self.positioner, scene, ids, edit.count, self._relations(scene, edit.places))
+            return copy(self.positioner, scene, ids, edit.count, self._relations(scene, edit.places))
         if isinstance(edit, Exchange):
             if len(ids) < 2:
                 raise EditRefused("two different objects can change places")
-            return exchanged(self.positioner, scene, edit.model_copy(update={"objects": list(ids)}))
+            return exchange(self.positioner, scene, edit.model_copy(update={"objects": list(ids)}))
         if isinstance(edit, SetState):
             return put_in_state(self.positioner.library, scene, ids, edit)
         if isinstance(edit, Rename):
-            return renamed(scene, ids[0], edit)
-        return aligned(self.positioner, scene, ids, edit)
+            return rename(scene, ids[0], edit)
+        return line_up(self.positioner, scene, ids, edit)
 
     def _ids(self, scene: Scene, given: Sequence[str]) -> list[str]:
         """Known ids, with the names of new objects resolved, each once."""
@@ -176,7 +176,7 @@ def _side_direction(scene: Scene, side: Side, moved_ids: Sequence[str]) -> tuple
     return float(way[0]), float(way[1])
 
 
-def _removed(library: ShapeLibrary, scene: Scene, ids: Sequence[str]) -> Done:
+def _remove(library: ShapeLibrary, scene: Scene, ids: Sequence[str]) -> Done:
     """Without objects and what is on them; what stood on a rug stands on the floor."""
     riding = [d for i in ids for d in descendants(scene, i) if broad(scene.object(i).category) != "rug"]
     gone = list(dict.fromkeys((*ids, *riding)))

@@ -20,7 +20,7 @@ from diorama_core.io.bounded import shortened
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene.types import Scene
-from diorama_core.text.edit_lengths import all_but, counted_edits, lifted, nearer, shift_in, shift_of
+from diorama_core.text.edit_lengths import all_but, lift, nearer, quantity_edits, shift_in, shift_of
 from diorama_core.text.edit_plan import (
     MAX_COPIES,
     Copy,
@@ -92,7 +92,7 @@ def _edits_of(
 ) -> tuple[Edit, ...]:
     selector = Selector(scene, library, last, selected)
     clause = plain(clause)
-    known = counted_edits(selector, clause) or room_edits(selector, clause) or object_edits(selector, clause, _subject)
+    known = quantity_edits(selector, clause) or room_edits(selector, clause) or object_edits(selector, clause, _subject)
     if known:
         return known
     match = _VERB.match(clause)
@@ -104,7 +104,7 @@ def _edits_of(
         return (Remove(objects=list(_subject(selector, rest))),)
     if verb == "clear":
         carrier = selector.objects(rest.removeprefix("off ").removeprefix("up "))
-        on = [i for c in carrier for i in _carried(scene, c)]
+        on = [i for c in carrier for i in _load(scene, c)]
         if not on:
             raise EditRefused(f"there is nothing on {scene.object(carrier[0]).label}")
         return (Remove(objects=on),)
@@ -119,12 +119,10 @@ def _edits_of(
     if verb in ("larger", "smaller"):
         return (Resize(objects=list(_subject(selector, rest)), factor=_factor(rest, verb == "larger")),)
     if verb == "lift":
-        return (lifted(selector, clause, rest, _subject),)
+        return (lift(selector, clause, rest, _subject),)
     if verb in ("move", "put") and (height := _HIGHER.search(rest)) is not None:
         return (
-            lifted(
-                selector, "lower" if height[2] or height[1] == "lower" else "raise", rest[: height.start()], _subject
-            ),
+            lift(selector, "lower" if height[2] or height[1] == "lower" else "raise", rest[: height.start()], _subject),
         )
     if verb in ("put", "move") and (shift := shift_in(selector, rest, _subject, leaves=verb == "put")) is not None:
         return (shift,)
@@ -162,7 +160,7 @@ def _is_wish(text: str) -> bool:
     return phrase is None or set(others) <= _AND_SO
 
 
-def _carried(scene: Scene, carrier: str) -> tuple[str, ...]:
+def _load(scene: Scene, carrier: str) -> tuple[str, ...]:
     return scene.children_of(carrier)
 
 

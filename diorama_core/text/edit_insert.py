@@ -16,7 +16,7 @@ from diorama_core.library.taxonomy import CATEGORIES, broad, category, having, w
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, SceneObject
 from diorama_core.text.edit_looks import looking_like
-from diorama_core.text.edit_places import lifted_onto, missed_notes
+from diorama_core.text.edit_places import lift_onto, unmet_notes
 from diorama_core.text.edit_plan import Done, Insert
 from diorama_core.text.looks import fitting_shapes
 from diorama_core.text.phrases import NUMBERS, NounPhrase, noun_phrase
@@ -30,7 +30,7 @@ TALL_M = 0.6
 """Plants of at least this height stand on the floor."""
 
 
-def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequence[Relation]) -> Done:
+def insert(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequence[Relation]) -> Done:
     """New objects of the library at the best free places where relations hold.
 
     Args:
@@ -77,7 +77,7 @@ def inserted(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequ
         new.append(object_id)
         if category(shape.category).mount == "surface" and not on and _is_on_floor(after, object_id):
             missed.append(f"{after.object(object_id).label} stands on the floor; nothing there carries it")
-        missed += missed_notes(after, object_id, relations)
+        missed += unmet_notes(after, object_id, relations)
     assert shape is not None
     after, note = looking_like(after, new, lacking)
     where = "".join(f" {r.words(scene)}" for r in relations)
@@ -166,5 +166,5 @@ def _with_one(
         spot = positioner.best(scene, item, candidates, usual=usual)
         if spot is not None:
             after = positioner.put(scene, item, spot)
-            return lifted_onto(after, object_id), object_id, shape
+            return lift_onto(after, object_id), object_id, shape
     return scene, None, None

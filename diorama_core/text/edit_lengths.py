@@ -113,7 +113,7 @@ def shift_in(selector: Selector, rest: str, subject: Subject, *, leaves: bool) -
     return Shift(objects=[object_id, *more], toward=target, toward_m=toward_m)
 
 
-def lifted(selector: Selector, clause: str, rest: str, subject: Subject) -> Shift:
+def lift(selector: Selector, clause: str, rest: str, subject: Subject) -> Shift:
     """ "raise the picture by 20 cm", "lower the clock".
 
     Args:
@@ -161,7 +161,7 @@ _CHANGED = re.compile(
 _ALL_BUT = re.compile(r"^all (?:of )?(?:but|except) (\w+)(?: of)? (?:the |my |these |those )?(.+)$")
 
 
-def counted_edits(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
+def quantity_edits(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     """More of a kind beside those that are there, or fewer; None where a clause says something else.
 
     Raises:

@@ -14,7 +14,7 @@ from diorama_core.library.language import size_request
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.scene import edits
 from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject
-from diorama_core.text.edit_places import freed
+from diorama_core.text.edit_places import free
 from diorama_core.text.edit_plan import Done, names_of
 from diorama_core.text.looks import fitting_shapes, has_look, is_made_of, look_of, nearest_in_size, scale_into
 from diorama_core.text.phrases import noun_phrase
@@ -23,7 +23,7 @@ SHAPES_COMPARED = 32
 """Shapes, of those that fit the words equally well, of which the nearest in size is taken."""
 
 
-def restyled(library: ShapeLibrary, scene: Scene, ids: Sequence[str], words: str) -> Done:
+def restyle(library: ShapeLibrary, scene: Scene, ids: Sequence[str], words: str) -> Done:
     """Objects in a colour, or of a material: shapes that are made of it, or paint.
 
     Args:
@@ -77,7 +77,7 @@ def _change_material(
     return after, by_shape, already
 
 
-def swapped(positioner: Positioner, scene: Scene, ids: Sequence[str], words: str) -> Done:
+def swap(positioner: Positioner, scene: Scene, ids: Sequence[str], words: str) -> Done:
     """Other shapes in the place of objects: of the same kind where the words name none.
 
     Args:
@@ -97,14 +97,14 @@ def swapped(positioner: Positioner, scene: Scene, ids: Sequence[str], words: str
     if not shapes:
         raise EditRefused(f"the library has no other {label}")
     missing = len(lacking)
-    equal = [s for s in shapes if len(_lacked(s, appearance)) <= missing][:SHAPES_COMPARED]
+    equal = [s for s in shapes if len(_missing(s, appearance)) <= missing][:SHAPES_COMPARED]
     after, notes = scene, []
     like = nearest_in_size(equal, first.size_m) if appearance or kind == first.category else equal[0]
     for object_id in ids:
         item = scene.object(object_id)
-        change = _with_shape if kind == item.category else _replaced
+        change = _with_shape if kind == item.category else _replace
         after = change(after, item, like)
-        after, note = freed(positioner, after, object_id)
+        after, note = free(positioner, after, object_id)
         notes += note
     after, paint = looking_like(after, ids, lacking)
     line = f"swap {names_of(scene, ids)} for {with_article(like.caption or like.id)}"
@@ -120,17 +120,17 @@ def _with_shape(scene: Scene, item: SceneObject, shape: Shape) -> Scene:
     after = edits.refinish(edits.recolour(after, item.id, None), item.id, None)
     changed = {item.id: after.object(item.id)}
     if shape.category != item.category:
-        changed[item.id] = replace(changed[item.id], category=shape.category, label=_relabelled(item, shape.category))
+        changed[item.id] = replace(changed[item.id], category=shape.category, label=_label(item, shape.category))
     return replace(after, objects=tuple(changed.get(o.id, o) for o in after.objects))
 
 
-def _replaced(scene: Scene, item: SceneObject, shape: Shape) -> Scene:
+def _replace(scene: Scene, item: SceneObject, shape: Shape) -> Scene:
     """An object of another kind in its own size, at the same place and heading."""
     up = item.pose.R_world_object[:, 2]
     base = item.pose.position - up * item.size_m[2] / 2
     pose = Pose(item.pose.R_world_object, base + up * shape.size_m[2] / 2, np.ones(3))
     after = edits.swap(scene, item.id, Candidate(shape.id, shape.size_m, 0.0, pose), keep_pose=False)
-    new = replace(after.object(item.id), category=shape.category, label=_relabelled(item, shape.category))
+    new = replace(after.object(item.id), category=shape.category, label=_label(item, shape.category))
     after = replace(after, objects=tuple(new if o.id == item.id else o for o in after.objects))
     return edits.refinish(edits.recolour(after, item.id, None), item.id, None)
 
@@ -149,9 +149,9 @@ def looking_like(scene: Scene, ids: Sequence[str], lacking: Sequence[str]) -> tu
     return scene, tuple(notes)
 
 
-def _lacked(shape: Shape, appearance: Sequence[str]) -> tuple[str, ...]:
+def _missing(shape: Shape, appearance: Sequence[str]) -> tuple[str, ...]:
     return tuple(w for w in appearance if size_request(w) is None and not has_look(shape, w))
 
 
-def _relabelled(item: SceneObject, kind: str) -> str:
+def _label(item: SceneObject, kind: str) -> str:
     return item.label.replace(item.category, kind) if item.category in item.label else kind

@@ -27,7 +27,7 @@ MIN_HUNG_SHARE = 0.3
 """What hangs is not made shorter than this share of itself."""
 
 
-def moved(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: Sequence[Relation]) -> Done:
+def move(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: Sequence[Relation]) -> Done:
     """Objects at the best free places where relations hold.
 
     Args:
@@ -49,18 +49,18 @@ def moved(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: S
         if spot is None:
             raise EditRefused(f"there is no free place for {item.label} {placing[0].words(after)}")
         after = positioner.put(after, item, spot)
-        after = lifted_onto(after, item.id)
+        after = lift_onto(after, item.id)
         frame = RoomFrame.of(after)
         if (
             of_room := next((r for r in placing if r.side and not is_met(after, object_id, r, frame)), None)
         ) is not None:
             raise EditRefused(f"there is no free place for {item.label} {of_room.words(scene)}")
-        missed += missed_notes(after, object_id, placing)
+        missed += unmet_notes(after, object_id, placing)
     where = " and ".join(r.words(scene) for r in relations)
     return Done(after, (f"move {names_of(scene, ids)} {where}",), tuple(ids), tuple(missed))
 
 
-def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift, toward: str = "") -> Done:
+def shift(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift, toward: str = "") -> Done:
     """Objects moved by lengths: as seen in the photo, up and down what they hang on, or toward an object of an id.
 
     Args:
@@ -75,7 +75,7 @@ def shifted(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shif
     ids = [i for i in ids if not set(ids) & set(ancestors(scene, i))]  # what stands on these goes with them
     after, notes = _as_far_as_free(positioner, scene, ids, edit, toward)
     for object_id in ids:
-        after, note = freed(positioner, after, object_id)
+        after, note = free(positioner, after, object_id)
         if edit.up_m and not _is_within_heights(after, object_id):
             raise EditRefused(f"{scene.object(object_id).label} would leave its wall; move it by less")
         if _off_its_support(after, object_id):
@@ -97,19 +97,19 @@ def _as_far_as_free(
     positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift, toward: str
 ) -> tuple[Scene, list[str]]:
     """Objects moved together: by less where the whole way is not free, all of it where none of it is."""
-    whole = _shifted_by(scene, ids, edit, toward, 1.0)
+    whole = _shift_by(scene, ids, edit, toward, 1.0)
     if edit.up_m:
         return whole
     moved_ids = [d for i in ids for d in (i, *descendants(scene, i))]
     for share in SHARES:
-        after, notes = whole if share == 1.0 else _shifted_by(scene, ids, edit, toward, share)
+        after, notes = whole if share == 1.0 else _shift_by(scene, ids, edit, toward, share)
         if not positioner.collisions.pairs(after, moved_ids) and all(positioner.is_inside(after, i) for i in ids):
             short = [] if share == 1.0 else [f"{names_of(scene, ids)}: only {share:.0%} of the way is free"]
             return after, [*notes, *short]
     return whole
 
 
-def _shifted_by(scene: Scene, ids: Sequence[str], edit: Shift, toward: str, share: float) -> tuple[Scene, list[str]]:
+def _shift_by(scene: Scene, ids: Sequence[str], edit: Shift, toward: str, share: float) -> tuple[Scene, list[str]]:
     step = share * (edit.right_m * direction_of(scene, "right") + edit.away_m * direction_of(scene, "back"))
     after, notes = scene, list[str]()
     for object_id in ids:
@@ -144,7 +144,7 @@ def _hung_longer(scene: Scene, object_id: str, by_m: float) -> tuple[Scene, list
     return after, [f"{item.label} is {height:.2f} m tall now; it hangs at the ceiling as before"]
 
 
-def turned(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Turn, toward: str = "") -> Done:
+def turn(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Turn, toward: str = "") -> Done:
     """Objects turned where they are, by an angle or toward an object of an id.
 
     Args:
@@ -166,7 +166,7 @@ def turned(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Turn,
             angle = float(np.radians(edit.degrees))
         pose = replace(pose, R_world_object=yaw_rotation(angle) @ pose.R_world_object)
         after = edits.move(after, object_id, pose)
-        after, note = freed(positioner, after, object_id)
+        after, note = free(positioner, after, object_id)
         notes += note
     if toward:
         how = f"to {scene.object(toward).label}"
@@ -176,7 +176,7 @@ def turned(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Turn,
     return Done(after, (f"turn {names_of(scene, ids)} {how}",), tuple(ids), tuple(notes))
 
 
-def resized(positioner: Positioner, scene: Scene, ids: Sequence[str], factor: float) -> Done:
+def resize(positioner: Positioner, scene: Scene, ids: Sequence[str], factor: float) -> Done:
     """Objects larger or smaller, standing on what they stood on.
 
     Args:
@@ -198,13 +198,13 @@ def resized(positioner: Positioner, scene: Scene, ids: Sequence[str], factor: fl
         for child in on_it:
             after = seated(after, positioner.library, child)
         if hung is None or hung.relation != "mounted on":
-            after, note = freed(positioner, after, object_id)
+            after, note = free(positioner, after, object_id)
             notes += note
     how = "larger" if factor > 1 else "smaller"
     return Done(after, (f"make {names_of(scene, ids)} {factor:.0%} of its size ({how})",), tuple(ids), tuple(notes))
 
 
-def freed(positioner: Positioner, scene: Scene, object_id: str) -> tuple[Scene, list[str]]:
+def free(positioner: Positioner, scene: Scene, object_id: str) -> tuple[Scene, list[str]]:
     """An object that turned or grew into another steps aside, with the same heading."""
     after, item = scene, scene.object(object_id)
     moved_ids = [object_id, *descendants(scene, object_id)]
@@ -216,7 +216,7 @@ def freed(positioner: Positioner, scene: Scene, object_id: str) -> tuple[Scene, 
     return edits.move(scene, object_id, spot.pose), [f"{item.label} steps aside to stay free"]
 
 
-def missed_notes(scene: Scene, object_id: str, relations: Sequence[Relation]) -> list[str]:
+def unmet_notes(scene: Scene, object_id: str, relations: Sequence[Relation]) -> list[str]:
     """The relations that a placed object does not meet, in words."""
     frame = RoomFrame.of(scene)
     label = scene.object(object_id).label
@@ -227,7 +227,7 @@ def missed_notes(scene: Scene, object_id: str, relations: Sequence[Relation]) ->
     ]
 
 
-def lifted_onto(scene: Scene, rug_id: str) -> Scene:
+def lift_onto(scene: Scene, rug_id: str) -> Scene:
     """What stands wholly on a new rug is raised onto it; what reaches over its rim stays on the floor."""
     rug = scene.object(rug_id)
     if broad(rug.category) != "rug":

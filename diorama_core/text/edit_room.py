@@ -67,7 +67,7 @@ def covering_in_words(text: str, plane: Plane) -> SurfaceFinish | None:
         known = covering_in_words(" ".join(rest), plane) if rest else None
         if rest and known is None:
             return None
-        return _shaded(known or plane.finish or SurfaceFinish("paint", plane.colour), _RELATIVE[relative])
+        return _shade(known or plane.finish or SurfaceFinish("paint", plane.colour), _RELATIVE[relative])
     pattern = next((p for p, names in _PATTERNS.items() if set(rest) & set(names.split())), None)
     others = [w for w in rest if w not in _NAMES]
     wood = next((w for w in others if w in _WOODS and w in COLOURS and w not in ("grey", "white")), None)
@@ -84,7 +84,7 @@ def covering_in_words(text: str, plane: Plane) -> SurfaceFinish | None:
     return usual if look is None or look.colour is None else replace(usual, colour=look.colour)
 
 
-def _shaded(known: SurfaceFinish, by: float) -> SurfaceFinish:
+def _shade(known: SurfaceFinish, by: float) -> SurfaceFinish:
     toward = 1.0 if by > 0 else 0.0
     r, g, b = (float(c + (toward - c) * abs(by)) for c in known.colour)
     return replace(known, colour=(r, g, b))
@@ -94,7 +94,7 @@ ACROSS = 0.7
 """A wall ends a side of the room whose direction its normal shares at least so much."""
 
 
-def covered(scene: Scene, edit: Paint) -> Done:
+def cover(scene: Scene, edit: Paint) -> Done:
     """Walls, floor or ceiling in a colour, a pattern, or a darker or lighter colour than now."""
     role = {"walls": "wall", "floor": "floor", "ceiling": "ceiling"}[edit.part]
     planes = [p for p in scene.architecture.planes if p.role == role]
@@ -115,7 +115,7 @@ def covered(scene: Scene, edit: Paint) -> Done:
     return Done(after, (f"make {where} {edit.colour}",))
 
 
-def lengthened(scene: Scene, edit: RoomLength) -> Done:
+def lengthen(scene: Scene, edit: RoomLength) -> Done:
     """The room higher, longer or wider."""
     if edit.side == "height":
         top = ceiling_height(scene)
@@ -151,7 +151,7 @@ def lit(scene: Scene, edit: Light) -> Done:
     return Done(set_light(scene, settings), tuple(lines))
 
 
-def opened_wall(library: ShapeLibrary, scene: Scene, edit: InsertOpening) -> Done:
+def open_wall(library: ShapeLibrary, scene: Scene, edit: InsertOpening) -> Done:
     """A new door or window in a wall."""
     feet = wall_feet(scene)
     if not feet:

@@ -24,7 +24,7 @@ from diorama_core.scene import edits
 from diorama_core.scene.room_edits import move_plane
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene, Support, yaw_rotation
-from diorama_core.text.edit_places import freed, missed_notes
+from diorama_core.text.edit_places import free, unmet_notes
 from diorama_core.text.edit_plan import (
     Align,
     Done,
@@ -39,7 +39,7 @@ from diorama_core.text.edit_plan import (
 )
 
 
-def placed(positioner: Positioner, scene: Scene, object_id: str, edit: SetPlace) -> Done:
+def place_at(positioner: Positioner, scene: Scene, object_id: str, edit: SetPlace) -> Done:
     """One object at a base point, heading and size; what stands on it goes along.
 
     Args:
@@ -70,7 +70,7 @@ def placed(positioner: Positioner, scene: Scene, object_id: str, edit: SetPlace)
     return Done(after, (sentence,), (object_id,), tuple(notes))
 
 
-def supported(positioner: Positioner, scene: Scene, ids: Sequence[str], parent: str, against: str) -> Done:
+def support(positioner: Positioner, scene: Scene, ids: Sequence[str], parent: str, against: str) -> Done:
     """Objects held up by something else, and moved onto it; or held by nothing where there is no parent.
 
     Args:
@@ -110,7 +110,7 @@ def wall_moved(scene: Scene, edit: MoveWall) -> Done:
     return Done(move_plane(scene, edit.plane, edit.outward_m), (line,))
 
 
-def outlined(scene: Scene, edit: DrawRoom) -> Done:
+def outline(scene: Scene, edit: DrawRoom) -> Done:
     """The room over another outline."""
     return Done(
         draw_room_of_home(scene, np.array(edit.corners)), (f"draw the room again with {len(edit.corners)} corners",)
@@ -123,7 +123,7 @@ FACTORS = (0.1, 10.0)
 UPRIGHT = np.array([0.0, 0.0, 1.0])
 
 
-def measured(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Measure) -> Done:
+def set_side(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Measure) -> Done:
     """One side of objects longer or shorter, on the same base; what stands on them rises and sinks with their tops.
 
     Args:
@@ -151,13 +151,13 @@ def measured(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Mea
         else:
             for child in after.children_of(object_id):
                 after = seated(after, positioner.library, child)
-            after, note = freed(positioner, after, object_id)
+            after, note = free(positioner, after, object_id)
             notes += note
         lines.append(f"make {item.label} {target:.2f} m in {edit.side}")
     return Done(after, tuple(lines), tuple(ids), tuple(notes))
 
 
-def copied(positioner: Positioner, scene: Scene, ids: Sequence[str], count: int, relations: Sequence[Relation]) -> Done:
+def copy(positioner: Positioner, scene: Scene, ids: Sequence[str], count: int, relations: Sequence[Relation]) -> Done:
     """Copies of objects with all that was set of them, beside them where no place is said.
 
     Args:
@@ -190,13 +190,13 @@ def copied(positioner: Positioner, scene: Scene, ids: Sequence[str], count: int,
                 raise EditRefused(f"there is no free place for another {item.category} {placing[0].words(scene)}")
             after = positioner.put(after, copy, spot)
             new.append(new_id)
-            missed += missed_notes(after, new_id, relations)
+            missed += unmet_notes(after, new_id, relations)
     where = "".join(f" {r.words(scene)}" for r in relations)
     often = f" {count} times" if count > 1 else ""
     return Done(after, (f"copy {names_of(scene, ids)}{often}{where}",), tuple(new), tuple(missed))
 
 
-def exchanged(positioner: Positioner, scene: Scene, edit: Exchange) -> Done:
+def exchange(positioner: Positioner, scene: Scene, edit: Exchange) -> Done:
     """Two objects each where the other one was, on the same base; each turns as the other one stood."""
     first, second = (scene.object(i) for i in edit.objects)
     after = scene
@@ -218,7 +218,7 @@ def exchanged(positioner: Positioner, scene: Scene, edit: Exchange) -> Done:
         edge = after.support_of(item.id)
         for wall in edge.adheres_to if edge is not None else ():
             after = against_wall(after, item.id, after.plane(wall))
-        after, note = freed(positioner, after, item.id)
+        after, note = free(positioner, after, item.id)
         notes += note
     return Done(after, (f"exchange {first.label} and {second.label}",), tuple(edit.objects), tuple(notes))
 
@@ -252,13 +252,13 @@ def put_in_state(library: ShapeLibrary, scene: Scene, ids: Sequence[str], edit: 
     return Done(after, (f"{verb} {names_of(scene, ids)}",), tuple(ids))
 
 
-def renamed(scene: Scene, object_id: str, edit: Rename) -> Done:
+def rename(scene: Scene, object_id: str, edit: Rename) -> Done:
     """An object under another name."""
     line = f"call {scene.object(object_id).label} “{edit.to}”"
     return Done(edits.rename(scene, object_id, edit.to), (line,), (object_id,))
 
 
-def aligned(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Align) -> Done:
+def line_up(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Align) -> Done:
     """Objects in one line, what hangs at one height; or with equal gaps along the way they are spread.
 
     Args:
@@ -283,6 +283,6 @@ def aligned(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Alig
     across = np.cross(UPRIGHT, axis)
     after, notes = align(scene, ids, across, "middle"), list[str]()
     for object_id in ids:
-        after, note = freed(positioner, after, object_id)
+        after, note = free(positioner, after, object_id)
         notes += note
     return Done(after, (f"line up {names_of(scene, ids)}",), tuple(ids), tuple(notes))

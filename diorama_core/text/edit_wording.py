@@ -119,7 +119,7 @@ def clauses_of(command: str) -> tuple[str, ...]:
 def plain(clause: str) -> str:
     """A clause without what is only polite, in the form of a command."""
     clause = _COPY.sub("it", _POLITE.sub("", _AT_END.sub("", clause)).strip())
-    clause = _OVER.sub("", _SHOULD.sub(r"make \1 ", _MAY.sub(_permitted, _HAVE_FACE.sub(r"make \1 ", clause))))
+    clause = _OVER.sub("", _SHOULD.sub(r"make \1 ", _MAY.sub(_command, _HAVE_FACE.sub(r"make \1 ", clause))))
     clause = _COLOUR_OF.sub(r"make \1 ", _ATTRIBUTE.sub(r"the \2 of \1", _SO_IT_IS.sub("", clause)))
     clause = _FILLED.sub(r"add several \2 on \1", _ANYTHING.sub("everything", clause))
     if (given := _GIVEN.match(clause)) is not None:
@@ -131,11 +131,11 @@ def plain(clause: str) -> str:
         verb = "put" if wanted[2] is None and split_places(wanted[1])[1] else "make"
         clause = " ".join(w for w in (verb, wanted[1], wanted[2]) if w)
     if (taken := _TAKEN.match(clause)) is not None:
-        return f"remove {_taken_phrase(taken)}"
+        return f"remove {_phrase(taken)}"
     return _ORIGIN.sub(" on ", _GONE.sub(r"remove \1", clause))
 
 
-def _permitted(asked: re.Match[str]) -> str:
+def _command(asked: re.Match[str]) -> str:
     """ "can the walls be green" and "could the piano go by the window" as commands."""
     return f"make {asked[1]} " if asked[2] else f"put {asked[1]} "
 
@@ -150,11 +150,11 @@ def _without_remarks(clauses: list[str]) -> tuple[str, ...]:
             clause, about = _PRONOUN.sub(about, clause, count=1), ""
         taken = _PICKED_UP.match(_POLITE.sub("", clause))
         if taken is not None and not last and _SET_DOWN.match(clauses[index + 1]):
-            about = _taken_phrase(taken)
+            about = _phrase(taken)
             continue
         if re.match(rf"^{_BEGINS}", clause) is None:
             remark = _REMARK.match(clause) or _LIKED.match(clause)
-            cure = _cured(remark)
+            cure = _cure(remark)
             if remark is not None and not last:
                 about = remark[1]
                 continue
@@ -163,12 +163,12 @@ def _without_remarks(clauses: list[str]) -> tuple[str, ...]:
     return tuple(remarks)
 
 
-def _taken_phrase(taken: re.Match[str]) -> str:
+def _phrase(taken: re.Match[str]) -> str:
     """Phrase for what is taken, with what it is on."""
     return taken[1] if taken[2] is None else f"{taken[1]} on {taken[2]}"
 
 
-def _cured(match: re.Match[str] | None) -> str | None:
+def _cure(match: re.Match[str] | None) -> str | None:
     if match is not None and match.re is _LIKED and re.search(r"need|want|use", match[0][: match.start(1)]):
         return f"remove {match[1]}"
     too = (

@@ -125,14 +125,14 @@ def object_edits(selector: Selector, clause: str, subject: Subject) -> tuple[Edi
     if len(each := list(_LENGTH_AND_SIDE.finditer(clause))) > 1 and clause.startswith(("make ", "set ")):
         ids = list(subject(selector, clause[: each[0].start()].partition(" ")[2]))
         return tuple(Measure(objects=ids, side=_SIDES[m[1]][0], to_m=length_in(m[0]) or 0.0) for m in each)
-    for read in (_sized, _off_wall, _state, _copied, _exchanged, _named, _arranged):
+    for read in (_measure, _off_wall, _state, _copy, _exchange, _rename, _align):
         edits = read(selector, clause, subject)
         if edits is not None:
             return (edits,)
-    return _sized_whole(selector, clause, subject)
+    return _measures(selector, clause, subject)
 
 
-def _sized(selector: Selector, clause: str, subject: Subject) -> Measure | None:
+def _measure(selector: Selector, clause: str, subject: Subject) -> Measure | None:
     """ "make the sofa 2 m wide", "make the plant half as tall", "set the width of the desk to 1.4 m"."""
     length = length_in(clause)
     plain = " ".join(without_lengths(clause).split())
@@ -158,7 +158,7 @@ def _sized(selector: Selector, clause: str, subject: Subject) -> Measure | None:
     return Measure(objects=ids, side=side, to_m=length)
 
 
-def _sized_whole(selector: Selector, clause: str, subject: Subject) -> tuple[Edit, ...] | None:
+def _measures(selector: Selector, clause: str, subject: Subject) -> tuple[Edit, ...] | None:
     """ "make the rug 3 by 2 m", "make the sideboard 1.6 m", "make the table as high as the desk"."""
     if (like := _AS_ANOTHER.match(clause)) is not None:
         side = _SIDES.get(like[2] or like[3], ("width", 1.0))[0]
@@ -201,7 +201,7 @@ def _state(selector: Selector, clause: str, subject: Subject) -> SetState | None
     return SetState(objects=list(subject(selector, match[2])), state=_STATES[match[1]])
 
 
-def _copied(selector: Selector, clause: str, subject: Subject) -> Copy | None:
+def _copy(selector: Selector, clause: str, subject: Subject) -> Copy | None:
     match = _COPIED.match(clause)
     if match is None:
         return None
@@ -223,7 +223,7 @@ def _copied(selector: Selector, clause: str, subject: Subject) -> Copy | None:
     return Copy(objects=list(ids), count=count, places=wanted)
 
 
-def _exchanged(selector: Selector, clause: str, subject: Subject) -> Exchange | None:
+def _exchange(selector: Selector, clause: str, subject: Subject) -> Exchange | None:
     match = _EXCHANGED.match(clause)
     both = _BOTH_EXCHANGED.match(clause)
     if match is None and both is None:
@@ -242,7 +242,7 @@ def _exchanged(selector: Selector, clause: str, subject: Subject) -> Exchange | 
     return Exchange(objects=[first[0], second[0]])
 
 
-def _named(selector: Selector, clause: str, subject: Subject) -> Rename | None:
+def _rename(selector: Selector, clause: str, subject: Subject) -> Rename | None:
     match = _NAMED.match(clause)
     if match is None:
         return None
@@ -264,7 +264,7 @@ def _named(selector: Selector, clause: str, subject: Subject) -> Rename | None:
     raise EditRefused(f"“{clause}”: which object, and what name? For example: call the plant ficus")
 
 
-def _arranged(selector: Selector, clause: str, subject: Subject) -> Align | None:
+def _align(selector: Selector, clause: str, subject: Subject) -> Align | None:
     for pattern, how in ((_LINED, "in line"), (_LEVELLED, "in line"), (_SPACED, "evenly")):
         match = pattern.match(clause)
         if match is None or split_places(match[1])[1] or re.search(r"\bwith\b", match[1]):

@@ -116,7 +116,7 @@ def apply_edits(
         after = done.scene
         lines += done.lines
         notes += done.notes
-    return _proposed(command, scene, after, edits, lines, notes, translator)
+    return _proposal(command, scene, after, edits, lines, notes, translator)
 
 
 def _propose_by_grammar(command: str, scene: Scene, library: ShapeLibrary, selected: Sequence[str]) -> ProposedEdits:
@@ -133,7 +133,7 @@ def _propose_by_grammar(command: str, scene: Scene, library: ShapeLibrary, selec
             edits.append(edit)
             lines += done.lines
             notes += done.notes
-    return _proposed(command, scene, after, edits, lines, notes, "grammar")
+    return _proposal(command, scene, after, edits, lines, notes, "grammar")
 
 
 def _restore_case(edit: Edit, command: str) -> Edit:
@@ -163,7 +163,7 @@ def _propose_by_model(
     return apply_edits(plan.edits, scene, library, command=command, translator=settings.model, progress=progress)
 
 
-def _proposed(
+def _proposal(
     command: str,
     before: Scene,
     after: Scene,

@@ -40,10 +40,10 @@ def to_english(text: str) -> str:
     english = sum(word in _ENGLISH for word in tokens)
     if scores[best] < MIN_WORDS or scores[best] <= english:
         return text
-    return re.sub(r"\s+([,.;:!?])", r"\1", " ".join(word for word in _translated(tokens, _phrases(best)) if word))
+    return re.sub(r"\s+([,.;:!?])", r"\1", " ".join(word for word in _translate(tokens, _phrases(best)) if word))
 
 
-def _translated(tokens: list[str], phrases: Mapping[Phrase, str]) -> Iterator[str]:
+def _translate(tokens: list[str], phrases: Mapping[Phrase, str]) -> Iterator[str]:
     at = 0
     while at < len(tokens):
         for length in range(min(MAX_PHRASE, len(tokens) - at), 0, -1):

@@ -27,7 +27,7 @@ from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene, SceneObject
-from diorama_core.text.compose import composed_room
+from diorama_core.text.compose import compose_room
 from diorama_core.text.phrases import NUMBERS
 from diorama_core.text.prompt import ROOMS
 
@@ -78,7 +78,7 @@ def rooms_asked(prompt: str) -> tuple[AskedRoom, ...]:
     return tuple(found) if len(found) >= SAYS_HOME or (len(found) > 1 and bare != text) else ()
 
 
-def composed_home(
+def compose_home(
     asked: Sequence[AskedRoom], library: ShapeLibrary, seed: int, progress: Progress
 ) -> tuple[Scene, tuple[str, ...]]:
     """The home, without a camera, and notes about what could not be met.
@@ -92,7 +92,7 @@ def composed_home(
     home, notes = Scene(), list[str]()
     for number, one in enumerate(asked):
         progress.report(number / len(asked), f"composing the {one.name}")
-        room = composed_room(f"a {one.looks} {one.name}".replace("  ", " "), library, seed + number)
+        room = compose_room(f"a {one.looks} {one.name}".replace("  ", " "), library, seed + number)
         notes += room.notes
         if number == 0:
             home = room.scene
@@ -125,7 +125,7 @@ def _places(
         if all(floors[-1].distance(f) > APART_M for f in floors[:-1]):
             low_x, low_y, high_x, high_y = shapely.union_all(floors).bounds
             between = made.object(door)
-            made, half = _opened(made, door) if is_open else (made, float(between.size_m[1]) / 2)
+            made, half = _open(made, door) if is_open else (made, float(between.size_m[1]) / 2)
             gone = _ids_in_way(made, between, half)
             lost_m2 = sum(float(np.prod(made.object(i).size_m[:2])) for i in gone)
             yield (round(lost_m2, 1), (high_x - low_x) * (high_y - low_y)), edits.remove(made, gone)
@@ -152,7 +152,7 @@ def _ids_in_way(home: Scene, door: SceneObject, half_m: float) -> set[str]:
     return gone
 
 
-def _opened(home: Scene, door: str) -> tuple[Scene, float]:
+def _open(home: Scene, door: str) -> tuple[Scene, float]:
     """The home with a passage in place of a door, as wide as both faces let it be; and half its width."""
     item, walls = home.object(door), home.architecture.by_role("wall")
     wall = wall_of(item, walls, home)

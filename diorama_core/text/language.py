@@ -88,7 +88,7 @@ class Mended:
     notes: tuple[str, ...]
 
 
-def listed_request(prompt: str, settings: LmmSettings, progress: Progress) -> RoomRequest:
+def list_request(prompt: str, settings: LmmSettings, progress: Progress) -> RoomRequest:
     """What a description asks for, as a language model lists it.
 
     Raises:
@@ -130,7 +130,7 @@ def _wish(listed: ListedWish) -> Wish | None:
     return Wish(listed.relation, targets) if targets else None
 
 
-def mended(
+def mend(
     prompt: str,
     scene: Scene,
     library: ShapeLibrary,

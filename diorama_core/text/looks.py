@@ -74,7 +74,7 @@ def look_of(text: str) -> Look | None:
         return None
     plain, finish = MATERIALS.get(material, (None, None))
     colour = named or plain or (0.5, 0.5, 0.5)
-    return Look(" ".join(words), _shaded(colour, shade), finish, material)
+    return Look(" ".join(words), _shade(colour, shade), finish, material)
 
 
 def _colour(name: str) -> Colour | None:
@@ -90,7 +90,7 @@ def _colour(name: str) -> Colour | None:
     return r / 255, g / 255, b / 255
 
 
-def _shaded(colour: Colour, shade: float) -> Colour:
+def _shade(colour: Colour, shade: float) -> Colour:
     target = 1.0 if shade > 0 else 0.0
     r, g, b = (float(c + (target - c) * min(abs(shade), 0.85)) for c in colour)
     return r, g, b

@@ -63,12 +63,12 @@ def picture_of(prompt: str, endpoint: ImageSettings, progress: Progress = SILENT
     """
     words = words_of(prompt)
     progress.report(0.0, f"Asking {endpoint.model} for a picture")
-    read = read_inputs(_generated(words, endpoint), name="generated.png")
+    read = read_inputs(_generate(words, endpoint), name="generated.png")
     progress.report(1.0, "The picture is here")
     return TextPicture(read.inputs, (f"the picture was made by {endpoint.model} from your text", *read.warnings))
 
 
-def _generated(words: str, endpoint: ImageSettings) -> bytes:
+def _generate(words: str, endpoint: ImageSettings) -> bytes:
     """PNG or JPEG bytes from images/generations."""
     import openai
 

@@ -45,7 +45,7 @@ def rows_of(request: RequestedObject, shape: Shape) -> Rows:
     return Rows(request.count, request.rows, request.category, np.asarray(shape.size_m), face_to_face, watching)
 
 
-def placed_rows(
+def place_rows(
     scene: Scene,
     request: RequestedObject,
     shapes: Sequence[Shape],

@@ -139,7 +139,7 @@ class _Reading:
     """Places, with their clauses, that were named before any object: "a reading nook by the window"."""
 
 
-def understood_prompt(prompt: str) -> RoomRequest:
+def read_prompt(prompt: str) -> RoomRequest:
     """Read a prompt in plain English, German, French or Spanish; what is not understood is listed, never fatal."""
     text = " ".join(re.sub(r"[^a-z0-9' ,;.-]+", " ", to_english(prompt).lower()).split())
     room, rest = _room(text)
@@ -224,11 +224,11 @@ def _subject(reading: _Reading, phrase: NounPhrase | None) -> int | None:
         if known is not None:
             return known
     count = min(phrase.count * _times(reading, phrase.category), max(MAX_OF_A_KIND, phrase.count))
-    reading.objects.append(_requested(phrase, count))
+    reading.objects.append(_request(phrase, count))
     return len(reading.objects) - 1
 
 
-def _requested(phrase: NounPhrase, count: int) -> RequestedObject:
+def _request(phrase: NounPhrase, count: int) -> RequestedObject:
     """Rows are of what stands on the floor; what hangs or lies on others in a row is aligned."""
     request = RequestedObject(phrase.category, phrase.label, count, phrase.appearance)
     if not phrase.rows or count < 2:
@@ -321,7 +321,7 @@ def _wish(reading: _Reading, index: int | None, wish: Wish) -> None:
         reading.objects[index] = replace(request, wishes=(*request.wishes, wish))
 
 
-def _meant(reading: _Reading, index: int | None, kind: RelationKind, several: bool) -> str | None:
+def _referent(reading: _Reading, index: int | None, kind: RelationKind, several: bool) -> str | None:
     """Category of what "it" means: the last before that can be what the relation says, else the last at all.
 
     Things are on what carries things, and stand near furniture rather than near its lamps and plants: in "an armchair,
@@ -352,7 +352,7 @@ def _target(reading: _Reading, words: str, index: int | None, kind: RelationKind
     if phrase is None:
         return None
     if phrase.pronoun:
-        return _meant(reading, index, kind, phrase.count > 1)
+        return _referent(reading, index, kind, phrase.count > 1)
     if not phrase.label:
         return None
     kin = next((o.category for o in reading.objects if o.category == phrase.category), None)
@@ -362,7 +362,7 @@ def _target(reading: _Reading, words: str, index: int | None, kind: RelationKind
     if kin is None and phrase.category not in OPENING_CATEGORIES:
         # "A lamp on each night stand" means at least two.
         count = max(phrase.count, 2) if phrase.every else phrase.count
-        reading.objects.append(_requested(phrase, count))
+        reading.objects.append(_request(phrase, count))
     return kin or phrase.category
 
 
@@ -370,7 +370,7 @@ def _room(text: str) -> tuple[RoomKind, str]:
     """The kind of room that is named first, and the prompt without its name."""
     begins = re.match(r"(?:an? |the )?(?:[a-z'-]+ ){1,2}(?:corner|nook|area|den)\b", text)
     if begins and noun_phrase(begins.group().rpartition(" ")[0])[0] is None and "reading" not in begins.group():
-        return _guessed_room(text), f" , {text[begins.end() :]}"
+        return _guess_room(text), f" , {text[begins.end() :]}"
     for words, kind in ROOMS:
         match = re.search(rf"\b(?:a |an |the )?(?:[a-z'-]+ ){{0,2}}?{words}\b(?! (?:{_COMPOUNDS})s?\b)", text)
         if match and not resolve(match.group()).exact:
@@ -382,10 +382,10 @@ def _room(text: str) -> tuple[RoomKind, str]:
                 r"\b(?:a|an|the|small|large|big|cosy|cozy|tiny|spacious|modern|bright)\s*$", "", text[:start]
             )
             return kind, f"{before} , {text[start + len(words) :]}"
-    return _guessed_room(text), text
+    return _guess_room(text), text
 
 
-def _guessed_room(text: str) -> RoomKind:
+def _guess_room(text: str) -> RoomKind:
     hints: tuple[tuple[str, RoomKind], ...] = (
         (r"\bbeds?\b|night ?stand", "bedroom"),
         (r"\bdesks?\b|\bmonitor|computer", "study"),

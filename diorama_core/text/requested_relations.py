@@ -79,7 +79,7 @@ def seats_at(size_m: Sequence[float], count: int) -> tuple[tuple[float, float], 
     return tuple(p if size_m[0] >= size_m[1] else (p[1], p[0]) for p in flat[:count])
 
 
-def seated(scene: Scene, relations: Sequence[Relation], request: RequestedObject, copy: int) -> list[Relation]:
+def place_seat(scene: Scene, relations: Sequence[Relation], request: RequestedObject, copy: int) -> list[Relation]:
     """The relations of one of several seats with its place at the long table that they are around.
 
     Args:
@@ -89,14 +89,14 @@ def seated(scene: Scene, relations: Sequence[Relation], request: RequestedObject
         copy: which of the seats.
     """
 
-    def placed(relation: Relation) -> Relation:
+    def place(relation: Relation) -> Relation:
         target = next((t for t in relation.targets if scene.has_object(t)), None)
         if relation.kind != "around" or target is None or broad(scene.object(target).category) != "table":
             return relation
         places = seats_at(tuple(scene.object(target).size_m), request.count)
         return replace(relation, seat_m=places[copy]) if copy < len(places) else relation
 
-    return [placed(r) for r in relations] if request.count > 1 else list(relations)
+    return [place(r) for r in relations] if request.count > 1 else list(relations)
 
 
 def is_sat_around(request: RequestedObject, wanted: Sequence[RequestedObject]) -> bool:

@@ -100,7 +100,7 @@ TALL_PLANT_M = 0.6
 SOFA_WIDTHS_M = {"two-seater": (1.2, 1.9), "three-seater": (1.75, 2.4), "four-seater": (2.2, 4.0)}
 
 
-def requested_shapes(
+def shapes_for(
     library: ShapeLibrary, rng: np.random.Generator, request: RequestedObject, wanted: Sequence[RequestedObject]
 ) -> tuple[Shape, ...]:
     """Shapes that fit the words equally well, in an order left to chance; the others after them.
@@ -155,7 +155,7 @@ def requested_shapes(
     return tuple(named[int(k)] for k in order)
 
 
-def dressed(scene: Scene, object_id: str, shape: Shape, appearance: Sequence[str]) -> Scene:
+def dress(scene: Scene, object_id: str, shape: Shape, appearance: Sequence[str]) -> Scene:
     """Colours that no shape has are painted on.
 
     Args:

@@ -23,10 +23,10 @@ from diorama_core.scene.types import Camera, Intrinsics, Scene
 from diorama_core.synthesis import to_photo_world
 from diorama_core.synthesis.cameras import level_pose
 from diorama_core.synthesis.finishes import finish_textures
-from diorama_core.text.compose import composed_room
-from diorama_core.text.home import composed_home, rooms_asked
-from diorama_core.text.language import listed_request, mended
-from diorama_core.text.prompt import RequestedObject, understood_prompt
+from diorama_core.text.compose import compose_room
+from diorama_core.text.home import compose_home, rooms_asked
+from diorama_core.text.language import list_request, mend
+from diorama_core.text.prompt import RequestedObject, read_prompt
 
 SIZE = (1024, 768)
 PROBE_PX = (96, 72)
@@ -45,7 +45,7 @@ CUT_WORTH = 0.45
 NEAR_M = 0.9
 
 
-def finished(scene: Scene, library: ShapeLibrary) -> tuple[Scene, Mapping[str, UInt8[np.ndarray, "_ _ 3"]]]:
+def finish(scene: Scene, library: ShapeLibrary) -> tuple[Scene, Mapping[str, UInt8[np.ndarray, "_ _ 3"]]]:
     """The room in the world of a camera that shows most of it, and its planes' pictures by name."""
     # Every room has doors and windows; a picture may do without.
     worth = {o.id: 0.2 if o.category in OPENING_CATEGORIES else 1.0 for o in scene.objects}
@@ -108,23 +108,23 @@ def scene_from_text(
     """
     words = words_of(prompt)
     if rooms := rooms_asked(words):
-        home, unmet_lines = composed_home(rooms, library, seed, progress.part(0.0, 0.6))
-        scene, textures = finished(home, library)
+        home, unmet_lines = compose_home(rooms, library, seed, progress.part(0.0, 0.6))
+        scene, textures = finish(home, library)
         return SceneFromText(scene, textures, (f"a home of {len(scene.rooms)} rooms, composed by rules", *unmet_lines))
     request, remarks = None, ["the room was composed from the library by rules"]
     if language_model is not None:
         try:
-            request = listed_request(words, language_model, progress.part(0.0, 0.3))
+            request = list_request(words, language_model, progress.part(0.0, 0.3))
             remarks = [f"{language_model.model} listed what the room holds; it was composed from the library by rules"]
         except UnavailableError as error:
             remarks.append(f"the language model was not used ({error})")
-    room = composed_room(words, library, seed, request=request, progress=progress.part(0.3, 0.6))
+    room = compose_room(words, library, seed, request=request, progress=progress.part(0.3, 0.6))
     added = [f"added, as such rooms have it: {', '.join(room.added)}"] if room.added else []
     progress.report(0.6, "Looking for the best view")
-    scene, textures = finished(room.scene, library)
+    scene, textures = finish(room.scene, library)
     notes: tuple[str, ...] = (*remarks, *room.notes, *added)
     if language_model is not None and request is not None:
-        better = mended(words, scene, library, textures, language_model, progress.part(0.65, 1.0))
+        better = mend(words, scene, library, textures, language_model, progress.part(0.65, 1.0))
         scene, notes = better.scene, (*notes, *better.notes)
     progress.report(1.0, "The room is ready")
     return SceneFromText(scene, textures, notes)
@@ -135,7 +135,7 @@ def unmet(prompt: str, scene: Scene) -> tuple[str, ...]:
 
     An object counts for the first request that names its category, else for one of a kindred category.
     """
-    request = understood_prompt(prompt)
+    request = read_prompt(prompt)
     present_counts = Counter(o.category for o in scene.objects)
     lines = []
     for asked in request.objects:

@@ -17,9 +17,9 @@ from diorama_core.export.gltf import write_gathered
 from diorama_core.export.gltf_document import (
     DRACO_EXTENSION,
     draco_mesh,
-    encoded_faces,
-    encoded_vertices,
-    prepared,
+    encode_faces,
+    encode_vertices,
+    prepare,
     tangents,
 )
 from diorama_core.geometry.rotations import rotation_from_vector
@@ -80,7 +80,7 @@ def test_triangles_stay_the_same_within_a_sixteenth_of_a_millimetre() -> None:
     surface = ball()
     extra = np.vstack([surface.vertices, [[9.0, 9.0, 9.0]]]).astype(np.float32)
     arrays = {"POSITION": extra, "NORMAL": np.vstack([surface.normals, [[0, 0, 1.0]]]).astype(np.float32)}
-    made, faces = prepared(arrays, surface.faces)
+    made, faces = prepare(arrays, surface.faces)
     assert len(made["POSITION"]) == len(surface.vertices), "what no face uses is left out"
     assert sorted(set(faces.ravel())) == list(range(len(surface.vertices)))
     assert farthest(triangles(made, faces), triangles({"POSITION": surface.vertices}, surface.faces)) < 2e-4
@@ -93,12 +93,12 @@ def test_triangles_stay_the_same_within_a_sixteenth_of_a_millimetre() -> None:
 
 
 def test_what_is_encoded_decodes_to_the_same_bytes() -> None:
-    made, faces = prepared({"POSITION": ball().vertices}, ball().faces)
-    data = encoded_vertices(made["POSITION"])
+    made, faces = prepare({"POSITION": ball().vertices}, ball().faces)
+    data = encode_vertices(made["POSITION"])
     assert len(data) < made["POSITION"].nbytes
     decoded = meshoptimizer.decode_vertex_buffer(len(made["POSITION"]), 12, data).reshape(-1, 3)
     np.testing.assert_array_equal(decoded, made["POSITION"])
-    indices = encoded_faces(faces.reshape(-1), len(decoded))
+    indices = encode_faces(faces.reshape(-1), len(decoded))
     back = meshoptimizer.decode_index_buffer(faces.size, 4, indices)
     assert len(indices) < 4 * faces.size
     assert farthest(triangles(made, back.reshape(-1, 3)), triangles(made, faces)) < 1e-9

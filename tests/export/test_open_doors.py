@@ -15,7 +15,7 @@ from diorama_core.export.mjcf import write_mjcf
 from diorama_core.export.sdf import write_sdf
 from diorama_core.export.stability import urdf_model
 from diorama_core.export.urdf import write_urdf
-from diorama_core.importing.forms import marked_file
+from diorama_core.importing.forms import read_mark
 from diorama_core.importing.opening import open_marked
 from diorama_core.library.catalogue import BuiltInLibrary, built_in_library
 from diorama_core.library.opening import can_open
@@ -202,6 +202,6 @@ def test_usd_places_it_open_and_its_joints_agree(half_open: ExportScene, suffix:
         else:
             expected[:3, :3] = Rotation.from_rotvec([opened, 0.0, 0.0]).as_matrix()
         np.testing.assert_allclose(between, expected, atol=1e-5, err_msg=name)
-    marked = marked_file(path)
+    marked = read_mark(path)
     assert marked is not None
     assert scene_to_json(open_marked(marked).scene) == scene_to_json(half_open.scene)

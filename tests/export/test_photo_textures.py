@@ -14,8 +14,8 @@ from PIL import Image
 from diorama_core.export import FORMATS, export_scene
 from diorama_core.export.gathering import ExportOptions, gather
 from diorama_core.export.gltf import write_gathered
-from diorama_core.export.photo_textures import bounded_pictures
-from diorama_core.importing.forms import marked_file
+from diorama_core.export.photo_textures import fit_pictures
+from diorama_core.importing.forms import read_mark
 from diorama_core.importing.opening import open_marked
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Architecture, PhotoMaterial, Plane, Pose, Scene, SceneObject
@@ -37,28 +37,28 @@ def pictures() -> dict[str, np.ndarray]:
 
 
 def test_pictures_that_the_scene_shows_are_bounded_together() -> None:
-    bounded = bounded_pictures(hung_picture(), pictures(), 40)
+    bounded = fit_pictures(hung_picture(), pictures(), 40)
     texels = sum(p.shape[0] * p.shape[1] for name, p in bounded.items() if name != "wall")
     assert 0.9 * 40**2 < texels <= 40**2
     assert bounded["wall"].shape == ART.shape
-    assert bounded_pictures(hung_picture(), pictures(), 80)["picture-1-picture-0"] is ART
+    assert fit_pictures(hung_picture(), pictures(), 80)["picture-1-picture-0"] is ART
 
 
 def test_pictures_of_planes_count_too_and_no_side_is_longer_than_the_squares() -> None:
     corners = np.array([[0.0, 1, 0], [1, 1, 0], [1, 1, 2], [0, 1, 2]])
     wall = Plane("wall_1", "wall", corners, texture="wall")
     walled = replace(hung_picture(), architecture=Architecture(planes=(wall,)))
-    bounded = bounded_pictures(walled, pictures(), 64)
+    bounded = fit_pictures(walled, pictures(), 64)
     assert 0.9 * 64**2 < sum(p.shape[0] * p.shape[1] for p in bounded.values()) <= 64**2
     assert bounded["wall"].shape == bounded["picture-1-picture-0"].shape
     long = {**pictures(), "picture-1-picture-0": np.zeros((8, 200, 3), np.uint8)}
-    assert bounded_pictures(hung_picture(), long, 80)["picture-1-picture-0"].shape == (3, 80, 3)
+    assert fit_pictures(hung_picture(), long, 80)["picture-1-picture-0"].shape == (3, 80, 3)
 
 
 def test_the_look_is_in_the_file_and_comes_back(tmp_path) -> None:
     path = tmp_path / "scene.glb"
     write_gathered(gather(hung_picture(), built_in_library(), textures=pictures()), path)
-    opened = open_marked(marked_file(path))
+    opened = open_marked(read_mark(path))
     assert opened.scene.objects == hung_picture().objects
     np.testing.assert_array_equal(opened.textures["picture-1-picture-0"], ART)
     assert opened.textures["picture-1-wood-1"].shape == (32, 32, 3)

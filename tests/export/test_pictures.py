@@ -9,13 +9,13 @@ from PIL import Image
 from diorama_core.export.pictures import (
     OncePerPicture,
     TexturePictures,
-    encoded_picture,
-    limited,
+    encode_picture,
     picture_suffix,
     png_bytes,
     power_of_two,
+    shrink,
     texture_file,
-    tinted,
+    tint,
 )
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 
@@ -23,24 +23,24 @@ GRADIENT = np.arange(48, dtype=np.uint8).reshape(4, 4, 3)
 
 
 def test_small_and_transparent_pictures_are_png_and_exact() -> None:
-    np.testing.assert_array_equal(np.asarray(Image.open(io.BytesIO(encoded_picture(GRADIENT)))), GRADIENT)
+    np.testing.assert_array_equal(np.asarray(Image.open(io.BytesIO(encode_picture(GRADIENT)))), GRADIENT)
     clear = np.zeros((600, 600, 4), np.uint8)
     assert picture_suffix(clear) == ".png"
-    assert Image.open(io.BytesIO(encoded_picture(clear))).format == "PNG"
+    assert Image.open(io.BytesIO(encode_picture(clear))).format == "PNG"
     assert Image.open(io.BytesIO(png_bytes(clear[..., :3]))).format == "PNG"
 
 
 def test_large_opaque_pictures_are_jpeg() -> None:
     large = np.full((600, 600, 3), 90, np.uint8)
     assert picture_suffix(large) == ".jpg"
-    back = Image.open(io.BytesIO(encoded_picture(large)))
+    back = Image.open(io.BytesIO(encode_picture(large)))
     assert back.format == "JPEG"
     assert abs(int(np.asarray(back).mean()) - 90) <= 1
 
 
 @pytest.mark.parametrize(("limit", "shape"), [(None, (60, 100)), (50, (30, 50)), (200, (60, 100))])
 def test_pictures_are_reduced_to_their_limit(limit: int | None, shape: tuple[int, int]) -> None:
-    assert limited(np.zeros((60, 100, 3), np.uint8), limit).shape == (*shape, 3)
+    assert shrink(np.zeros((60, 100, 3), np.uint8), limit).shape == (*shape, 3)
 
 
 def test_sides_become_powers_of_two() -> None:
@@ -52,10 +52,10 @@ def test_tinting_multiplies_light_and_leaves_alpha() -> None:
     picture = np.concatenate([GRADIENT * 5, np.full((4, 4, 1), 77, np.uint8)], axis=2)
     colour = (0.5, 1.0, 0.0)
     expected = 255 * linear_to_srgb(srgb_to_linear(picture[..., :3] / 255) * np.asarray(colour))
-    out = tinted(picture, colour)
+    out = tint(picture, colour)
     np.testing.assert_allclose(out[..., :3], expected, atol=0.5)
     np.testing.assert_array_equal(out[..., 3], 77)
-    assert tinted(picture, (1.0, 1.0, 1.0)) is picture
+    assert tint(picture, (1.0, 1.0, 1.0)) is picture
 
 
 def test_textures_are_files_whose_sides_are_powers_of_two() -> None:
@@ -92,4 +92,4 @@ def test_tinted_pictures_of_an_export_are_shared() -> None:
     first = pictures.tinted(GRADIENT, red)
     assert pictures.tinted(GRADIENT, red) is first
     assert pictures.encoded(first) is pictures.encoded(first)
-    np.testing.assert_array_equal(np.asarray(Image.open(io.BytesIO(pictures.encoded(first)))), tinted(GRADIENT, red))
+    np.testing.assert_array_equal(np.asarray(Image.open(io.BytesIO(pictures.encoded(first)))), tint(GRADIENT, red))

@@ -10,7 +10,7 @@ import shapely
 
 from diorama_core.errors import ExportError
 from diorama_core.export.game import write_game
-from diorama_core.export.unwrapping import unwrapped
+from diorama_core.export.unwrapping import unwrap
 from diorama_core.io.glb import read_glb
 from tests.export.scenes import gathered
 from tests.export.validators import gltf_findings, needs_gltf_validator
@@ -21,7 +21,7 @@ pytest.importorskip("xatlas", reason="xatlas is not installed (optional extra 'g
 def test_no_two_triangles_share_a_texel() -> None:
     scene = gathered("fittings")
     surfaces = scene.meshes[scene.object("desk_1").mesh].surfaces
-    after = list(unwrapped(surfaces))
+    after = list(unwrap(surfaces))
     uv = [s.light_uv[s.faces] for s in after if s.light_uv is not None]
     triangles = shapely.polygons(np.concatenate(uv))
     assert shapely.bounds(triangles).min() >= 0.0

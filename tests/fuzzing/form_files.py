@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
-from diorama_core.importing.forms import told
-from diorama_core.importing.measured_cloud import measured_cloud
+from diorama_core.importing.forms import open_form
+from diorama_core.importing.measured_cloud import measure_cloud
 from diorama_core.importing.point_files import read_points
 from diorama_core.library.ingest.finding import members_of
 from diorama_core.library.ingest.limits import Limits
@@ -171,7 +171,7 @@ def read_archive(data: bytes) -> object:
         for member in members:
             repaired(read_model(path, Path(name), Limits(), member).scene, Limits())
         if not members:
-            with told(path) as (form, place):
+            with open_form(path) as (form, place):
                 form.read(place, Progress())
         return len(members)
 
@@ -196,4 +196,4 @@ def _points(data: bytes, suffix: str) -> object:
     with tempfile.TemporaryDirectory() as name:
         path = Path(name) / f"room{suffix}"
         path.write_bytes(data)
-        return len(measured_cloud(read_points(path)).walls)
+        return len(measure_cloud(read_points(path)).walls)

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from diorama_core.importing.measured_cloud import measured_cloud
-from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_cloud import measure_cloud
+from diorama_core.importing.measured_room import open_room
 from diorama_core.importing.plan_pages import plan_page
 from diorama_core.importing.point_files import read_points
 from diorama_core.library.catalogue import built_in_library
@@ -74,7 +74,7 @@ def strange_cloud(data: bytes, random: Random) -> bytes:
 
 def _room_in(path: Path) -> object:
     """The room with its things, whose kinds need not be told apart here."""
-    return len(scene_to_json(opened_room(measured_cloud(read_points(path)), built_in_library()).scene).encode())
+    return len(scene_to_json(open_room(measure_cloud(read_points(path)), built_in_library()).scene).encode())
 
 
 @leaks

@@ -22,9 +22,9 @@ from diorama_core.export.gathering import ExportOptions, gather
 from diorama_core.export.gltf import glb_bytes
 from diorama_core.export.usd import write_usda, write_usdc
 from diorama_core.export.usd import write_usdz as write_usd_package
-from diorama_core.importing.forms import marked_file
+from diorama_core.importing.forms import read_mark
 from diorama_core.importing.gltf import read_marked_gltf
-from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_room import open_room
 from diorama_core.importing.opening import open_marked
 from diorama_core.importing.parts import parts_of_usd
 from diorama_core.importing.room import room_of
@@ -129,7 +129,7 @@ def _scanned(path: Path) -> object:
     room = read_room_plan(path)
     if room is None:
         raise InputError("no scan")  # as `diorama open` says it
-    return scene_to_json(opened_room(room, built_in_library()).scene).encode()
+    return scene_to_json(open_room(room, built_in_library()).scene).encode()
 
 
 read_roomplan = _file(".json", _scanned)
@@ -213,12 +213,12 @@ def _opened_usd(data: bytes) -> object:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"file{suffix}"
         path.write_bytes(data)
-        marked = marked_file(path)
+        marked = read_mark(path)
         if marked is not None:
             return len(scene_to_json(open_marked(marked).scene).encode())
         scan = read_room_plan(path)
         if scan is not None:
-            return len(scene_to_json(opened_room(scan, built_in_library()).scene).encode())
+            return len(scene_to_json(open_room(scan, built_in_library()).scene).encode())
         parts, _ = parts_of_usd(path)
         return len(room_of(parts).objects) if parts else 0
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from diorama_core.scene.schema import scene_to_json
 from diorama_core.text.editing_by_words import propose_edits
-from diorama_core.text.prompt import understood_prompt
+from diorama_core.text.prompt import read_prompt
 from tests.app.small_room import PlainLibrary, furnished_scene
 from tests.fuzzing.mutate import Random, damaged
 
@@ -38,7 +38,7 @@ def room_samples() -> tuple[bytes, ...]:
 
 
 def read_room_words(data: bytes) -> object:
-    return understood_prompt(data.decode("utf-8", "replace"))
+    return read_prompt(data.decode("utf-8", "replace"))
 
 
 def command_samples() -> tuple[bytes, ...]:

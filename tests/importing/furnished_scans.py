@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-from diorama_core.evaluation.benchmarks.cases import furnished, recipe
+from diorama_core.evaluation.benchmarks.cases import furnish, recipe
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Scene
@@ -21,7 +21,7 @@ def living_room() -> tuple[Scene, tuple[SyntheticFrame, ...]]:
 
     def make() -> tuple[Scene, tuple[SyntheticFrame, ...]]:
         tested = split_library(built_in_library(), "test")
-        scene = furnished(recipe(1, 1, 0)[0], tested)
+        scene = furnish(recipe(1, 1, 0)[0], tested)
         return scene, scanned(scene, tested, 0, places=3, turns=8)
 
     return made_once("scanned living room", make)

@@ -27,7 +27,7 @@ def hoard(path: Path, progress: Progress) -> int:
 def test_an_exported_scene_comes_back(tmp_path: Path) -> None:
     scene, library = scene_of("fittings")
     export_scene(scene, library, tmp_path / "room.glb", "glb")
-    imported = apart.imported_apart(tmp_path / "room.glb", tmp_path / "shapes", None, Progress())
+    imported = apart.import_apart(tmp_path / "room.glb", tmp_path / "shapes", None, Progress())
     assert (imported.opened.scene, imported.library_name) == (scene, "built-in")
     known = frozenset(s.id for s in built_in_library().shapes())
     assert apart.read_apart(tmp_path / "room.glb", tmp_path / "shapes", known, Progress()).scene == scene
@@ -36,7 +36,7 @@ def test_an_exported_scene_comes_back(tmp_path: Path) -> None:
 def test_what_the_reader_says_is_said_here(tmp_path: Path) -> None:
     (tmp_path / "room.glb").write_bytes(b"glTF and then nothing")
     with pytest.raises(InputError, match=r"^room\.glb cannot be read"):
-        apart.imported_apart(tmp_path / "room.glb", tmp_path / "shapes", None, Progress())
+        apart.import_apart(tmp_path / "room.glb", tmp_path / "shapes", None, Progress())
 
 
 @pytest.mark.parametrize("reader", [crash, hoard])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.errors import InputError
-from diorama_core.importing.forms import told
+from diorama_core.importing.forms import open_form
 from diorama_core.importing.point_files import read_points
 from tests.importing.scans import room_points
 
@@ -67,7 +67,7 @@ def test_other_numbers_are_no_points(tmp_path: Path) -> None:
         saved(tmp_path / "features.npy", np.ones((3000, 512), np.float32)),
     )
     for path in others:
-        with pytest.raises(InputError, match="array of numbers"), told(path):
+        with pytest.raises(InputError, match="array of numbers"), open_form(path):
             pass
     dumps = {
         "millimetres.bin": (1000 + RANDOM.integers(0, 3000, 300_000)).astype(np.uint16).tobytes(),

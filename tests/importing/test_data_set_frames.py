@@ -13,7 +13,7 @@ from jaxtyping import Float
 from PIL import Image
 
 from diorama_core.errors import InputError
-from diorama_core.importing.forms import told
+from diorama_core.importing.forms import open_form
 from diorama_core.importing.point_files import read_points
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Camera, Intrinsics
@@ -101,7 +101,7 @@ def scannet(folder: Path) -> None:
 @pytest.mark.parametrize("write", [seven_scenes, older_scannet, replica, scaled_replica, matterport, scannet])
 def test_a_data_set_s_folder_is_a_room(tmp_path: Path, write: Callable[[Path], None]) -> None:
     write(tmp_path / "room")
-    with told(tmp_path / "room") as (form, place):
+    with open_form(tmp_path / "room") as (form, place):
         assert "frames" in form.name
         points = read_points(place).points
     expected = np.array([m.bounds for m in room_meshes()])
@@ -124,5 +124,5 @@ def test_other_layouts_are_said(tmp_path: Path, files: list[str], line: str) -> 
     for name in files:
         (tmp_path / "room" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "room" / name).write_bytes(b"x")
-    with pytest.raises(InputError, match=line), told(tmp_path / "room"):
+    with pytest.raises(InputError, match=line), open_form(tmp_path / "room"):
         pass

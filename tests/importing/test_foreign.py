@@ -15,7 +15,7 @@ from PIL import Image
 from diorama_core.errors import InputError
 from diorama_core.export import export_scene
 from diorama_core.importing.foreign import scene_of_parts, take_missing_shapes
-from diorama_core.importing.forms import SceneParts, marked_file, told
+from diorama_core.importing.forms import SceneParts, open_form, read_mark
 from diorama_core.importing.opening import open_marked
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
 from diorama_core.library.store import CombinedLibrary, StoredLibrary
@@ -32,7 +32,7 @@ def known(tmp_path_factory: pytest.TempPathFactory) -> KnownShapes:
 
 
 def opened(path: Path, known: KnownShapes, folder: Path):
-    with told(path) as (form, place):
+    with open_form(path) as (form, place):
         content = form.read(place, Progress(), None)
     assert isinstance(content, SceneParts)
     return scene_of_parts(content.parts, path, StoredLibrary(folder / "models", create=True), Progress(), known)
@@ -48,7 +48,7 @@ def unmarked(tmp_path: Path, scene: Scene) -> Path:
 def test_a_foreign_glb_becomes_objects_in_a_room(tmp_path, known: KnownShapes) -> None:
     scene = furnished_room(LIBRARY)
     path = unmarked(tmp_path, scene)
-    assert marked_file(path) is None
+    assert read_mark(path) is None
     found = opened(path, known, tmp_path).scene
     check_scene(found)
     assert {p.role for p in found.architecture.planes} == {"floor", "ceiling", "wall"}
@@ -179,7 +179,7 @@ def test_shapes_that_no_library_has_come_out_of_the_file(tmp_path, known: KnownS
     scene = edited_room()
     path = tmp_path / "room.glb"
     export_scene(scene, LIBRARY, path, "glb")
-    marked = marked_file(path)
+    marked = read_mark(path)
     assert marked is not None
     found = open_marked(marked).scene
     sink = StoredLibrary(tmp_path / "models", create=True)
@@ -196,6 +196,6 @@ def test_shapes_that_no_library_has_come_out_of_the_file(tmp_path, known: KnownS
 def test_files_that_are_no_scene(tmp_path) -> None:
     Image.new("RGB", (4, 4)).save(tmp_path / "photo.png")
     with pytest.raises(InputError, match="is a picture: build a room from it"):
-        marked_file(tmp_path / "photo.png")
+        read_mark(tmp_path / "photo.png")
     with pytest.raises(InputError, match="does not exist"):
-        marked_file(tmp_path / "missing.glb")
+        read_mark(tmp_path / "missing.glb")

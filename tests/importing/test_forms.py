@@ -15,10 +15,10 @@ from scipy.spatial.transform import Rotation
 from diorama_core.errors import InputError
 from diorama_core.export import export_scene
 from diorama_core.importing.depth_frames import FRAME_FORMS, cloud_of_frames
-from diorama_core.importing.forms import SCENE_FORMS, SUFFIXES, SceneParts, scan_in, told
-from diorama_core.importing.measured_cloud import measured_cloud
+from diorama_core.importing.forms import SCENE_FORMS, SUFFIXES, SceneParts, open_form, scan_in
+from diorama_core.importing.measured_cloud import measure_cloud
 from diorama_core.importing.part import Part
-from diorama_core.importing.parts import joined_flat_parts
+from diorama_core.importing.parts import join_flat_parts
 from diorama_core.importing.point_cloud import PointCloud
 from diorama_core.importing.point_files import is_text_cloud, read_points, read_splat_ply
 from diorama_core.importing.room import room_of
@@ -87,7 +87,7 @@ def test_furniture_is_no_room() -> None:
 def test_a_flat_part_belongs_to_the_face_that_it_covers() -> None:
     screen = trimesh.Trimesh([[0.1, 0, 0.1], [1.1, 0, 0.1], [1.1, 0, 0.6], [0.1, 0, 0.6]], [[0, 1, 2], [0, 2, 3]])
     rug = trimesh.Trimesh([[3, 0, 0], [5, 0, 0], [5, 2, 0], [3, 2, 0]], [[0, 1, 2], [0, 2, 3]])
-    joined = joined_flat_parts([part("tv", box((0, 0.01, 0), (1.2, 0.06, 0.7))), part("s", screen), part("r", rug)])
+    joined = join_flat_parts([part("tv", box((0, 0.01, 0), (1.2, 0.06, 0.7))), part("s", screen), part("r", rug)])
     assert [p.name for p in joined] == ["tv", "r"]
     assert joined[0].whole.bounds[0, 1] == 0.0
 
@@ -102,7 +102,7 @@ def noisy_scan() -> trimesh.Trimesh:
 def test_a_scan_as_a_mesh_is_points_and_a_modelled_room_is_not() -> None:
     cloud = scan_in([part("mesh_0", noisy_scan())])
     assert cloud is not None
-    outline = measured_cloud(cloud).floor
+    outline = measure_cloud(cloud).floor
     assert outline is not None
     assert sorted(np.ptp(outline, axis=0)) == pytest.approx([DEPTH, WIDTH], abs=0.04)
     assert scan_in([part(name, mesh) for name, mesh in room_parts().items()]) is None
@@ -172,7 +172,7 @@ def test_polycams_frames_are_read_from_their_zip_and_as_the_folder_keyframes(tmp
             archive.write(path, path.relative_to(folder).as_posix())
     whole = read_points(folder).points
     for place in (tmp_path / "scan.zip", folder / "keyframes"):
-        with told(place) as (form, at):
+        with open_form(place) as (form, at):
             assert form.name == "Polycam raw data"
             np.testing.assert_allclose(read_points(at).points, whole)
 
@@ -188,12 +188,12 @@ def test_polycams_frames_are_read_from_their_zip_and_as_the_folder_keyframes(tmp
 )
 def test_what_is_no_scene_is_called_what_it_is(tmp_path: Path, name: str, content: str, said: str) -> None:
     (tmp_path / name).write_text(content)
-    with pytest.raises(InputError, match=said), told(tmp_path / name):
+    with pytest.raises(InputError, match=said), open_form(tmp_path / name):
         pass
 
 
 def test_a_missing_file_does_not_exist(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="does not exist"), told(tmp_path / "room.glb"):
+    with pytest.raises(InputError, match="does not exist"), open_form(tmp_path / "room.glb"):
         pass
 
 
@@ -255,7 +255,7 @@ def test_a_given_unit_is_believed(suffix: str, unit: str, tmp_path: Path) -> Non
             if suffix == ".glb":
                 scene.apply_transform(trimesh.transformations.rotation_matrix(-np.pi / 2, [1, 0, 0]))
             scene.export(path)
-    with told(path) as (form, place):
+    with open_form(path) as (form, place):
         content = form.read(place, Progress(), UNIT_M[unit])
     if isinstance(content, PointCloud):
         found = np.ptp(content.points, axis=0)
@@ -276,7 +276,7 @@ def test_files_that_say_their_unit_take_no_other(tmp_path: Path) -> None:
     own = tmp_path / "own.glb"
     export_scene(furnished_room(PrimitiveLibrary()), PrimitiveLibrary(), own, "glb")
     for path in (room, home, own):
-        with told(path) as (form, place), pytest.raises(InputError, match="leave out --unit"):
+        with open_form(path) as (form, place), pytest.raises(InputError, match="leave out --unit"):
             form.read(place, Progress(), 0.01)
 
 

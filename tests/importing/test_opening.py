@@ -13,7 +13,7 @@ import pytest
 from diorama_core.export import export_scene
 from diorama_core.export.gathering import ExportOptions
 from diorama_core.export.pictures import photo_text
-from diorama_core.importing.forms import marked_file
+from diorama_core.importing.forms import read_mark
 from diorama_core.importing.marked import as_bytes
 from diorama_core.importing.opening import open_marked
 from diorama_core.scene.types import Scene
@@ -36,7 +36,7 @@ def test_the_photo_comes_back_where_it_was_put_in(suffix: str, tmp_path: Path) -
     scene, library = scene_of("fittings")
     path, options = tmp_path / f"room.{suffix}", ExportOptions(photo=True)
     export_scene(scene, library, path, suffix, photo=photo_of(scene), options=options, provenance={"photo": "room.jpg"})
-    opened = open_marked(marked_file(path))
+    opened = open_marked(read_mark(path))
     assert opened.changes == ()
     assert opened.inputs is not None
     assert opened.inputs.photo.name == "room.jpg"
@@ -49,7 +49,7 @@ def test_a_file_without_its_photo_says_so(tmp_path: Path) -> None:
     path = tmp_path / "room.glb"
     export_scene(scene, library, path, "glb", photo=photo_of(scene), provenance={"photo": "room.jpg"})
     assert b"diorama_photo" not in path.read_bytes()
-    opened = open_marked(marked_file(path))
+    opened = open_marked(read_mark(path))
     assert opened.inputs is None
     assert opened.changes == ("room.jpg is not in the file; export it again with its photo",)
 
@@ -58,7 +58,7 @@ def test_a_file_without_its_photo_says_so(tmp_path: Path) -> None:
 def test_a_photo_that_cannot_be_used_is_left_out(photo: bytes, said: str, tmp_path: Path) -> None:
     scene, library = scene_of("fittings")
     export_scene(scene, library, tmp_path / "room.glb", "glb")
-    marked = marked_file(tmp_path / "room.glb")
+    marked = read_mark(tmp_path / "room.glb")
     assert marked is not None
     small = as_bytes(photo_text(np.zeros((300, 400, 3), np.uint8)))
     opened = open_marked(replace(marked, photo=photo or small))
@@ -126,7 +126,7 @@ def test_boxes_come_back_within_a_millimetre_and_one_that_was_moved_at_its_new_p
         move(path, "chair_1", by_m)
         expected["chair_1"] = expected["chair_1"] + by_m
         moved = {"chair_1"}
-    opened = open_marked(marked_file(path))
+    opened = open_marked(read_mark(path))
     found = boxes(opened.scene)
     assert found.keys() == expected.keys()
     for name, box in expected.items():

@@ -14,7 +14,7 @@ from PIL import Image
 from diorama_app.cli import main
 from diorama_core.artefacts import Inputs
 from diorama_core.evaluation.benchmarks.cases import recipe as recipe_of_rooms
-from diorama_core.evaluation.benchmarks.views import photographed
+from diorama_core.evaluation.benchmarks.views import photograph
 from diorama_core.importing.opening import Opened
 from diorama_core.importing.photo_of_scan import with_photo_of_scan
 from diorama_core.importing.roomplan_parts import KINDS
@@ -39,7 +39,7 @@ def room(number: int = 0) -> tuple[Scene, TruthView, np.ndarray]:
     """A furnished room, a photo of it, and where that was taken, in the room's own frame."""
     case = recipe_of_rooms(number + 1, 1, 0)[number]
     tested = split_library(built_in_library(), "test")
-    view = made_once(f"photo of {case.name}", lambda: photographed(case, tested, 1)[0])
+    view = made_once(f"photo of {case.name}", lambda: photograph(case, tested, 1)[0])
     there = view.camera.T_world_camera @ np.linalg.inv(view.truth.camera.T_world_camera)
     scene = view.truth.scene
     return moved_to_room(scene, there), view.truth, view.camera.position

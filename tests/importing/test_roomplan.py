@@ -13,7 +13,7 @@ from shapely.geometry import Polygon
 from diorama_app.cli import main
 from diorama_core.errors import InputError
 from diorama_core.geometry.planes import plane_axes
-from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_room import open_room
 from diorama_core.importing.opening import Opened
 from diorama_core.importing.roomplan import read_room_plan
 from diorama_core.importing.scene_import import import_scene
@@ -180,7 +180,7 @@ def test_an_empty_scan_is_an_empty_room(tmp_path: Path) -> None:
     (tmp_path / "room.json").write_text('{"walls": []}')
     room = read_room_plan(tmp_path / "room.json")
     assert room is not None
-    scene = opened_room(room, built_in_library()).scene
+    scene = open_room(room, built_in_library()).scene
     assert (scene.objects, scene.architecture.planes) == ((), ())
 
 

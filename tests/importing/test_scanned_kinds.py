@@ -8,8 +8,8 @@ import pytest
 import trimesh
 
 from diorama_core.errors import InputError
-from diorama_core.importing.measured_cloud import measured_cloud
-from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_cloud import measure_cloud
+from diorama_core.importing.measured_room import open_room
 from diorama_core.importing.measured_types import MeasuredBox, MeasuredRoom
 from diorama_core.importing.point_files import read_points
 from diorama_core.importing.scanned_kinds import ScannedSurface, unit_surface, with_scanned_kinds
@@ -25,13 +25,13 @@ LIBRARY = built_in_library()
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory: pytest.TempPathFactory) -> MeasuredRoom:
     _, frames = living_room()
-    return measured_cloud(read_points(write_scan(tmp_path_factory.mktemp("scan"), frames)))
+    return measure_cloud(read_points(write_scan(tmp_path_factory.mktemp("scan"), frames)))
 
 
 def right_kinds(room: MeasuredRoom) -> set[str]:
     """Kinds of furniture that stand in the opened room where the true one has the same."""
     truth, _ = living_room()
-    scene = opened_room(room, searched()).scene
+    scene = open_room(room, searched()).scene
     right = set()
     for item in truth.objects:
         for found in scene.objects:

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from diorama_core.importing.measured_cloud import measured_cloud
-from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_cloud import measure_cloud
+from diorama_core.importing.measured_room import open_room
 from diorama_core.importing.measured_types import MeasuredOpening, MeasuredWall
 from diorama_core.importing.point_cloud import PointCloud
-from diorama_core.importing.scanned_openings import scanned_openings
+from diorama_core.importing.scanned_openings import find_openings
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import yaw_rotation
 from tests.importing.scans import HEIGHT, TURN, room_points
@@ -45,7 +45,7 @@ def inside(x: np.ndarray, z: np.ndarray, r: Rectangle) -> np.ndarray:
 
 
 def found(points: np.ndarray) -> list[tuple[str, float, float, float, float]]:
-    openings = scanned_openings(points, [wall()], RING)
+    openings = find_openings(points, [wall()], RING)
     return [(o.kind, float(o.centre[0]), float(o.centre[2]), o.width_m, o.height_m) for o in openings]
 
 
@@ -120,11 +120,11 @@ def test_a_whole_scanned_room_opens_with_its_door_and_window_in_their_walls() ->
     low = -3.4 / 2
     hole = inside(x, z, (0.2, 0.9, 1.2, 2.0)) | inside(x, z, (-1.6, -1.0, -0.7, 2.05))
     cut = points[~((np.abs(y - low) < 0.05) & hole)]
-    measured = measured_cloud(PointCloud(cut @ yaw_rotation(0.2).T, np.array([0.0, 0.0, 1.0])))
+    measured = measure_cloud(PointCloud(cut @ yaw_rotation(0.2).T, np.array([0.0, 0.0, 1.0])))
     kinds: list[MeasuredOpening] = sorted(measured.openings, key=lambda o: o.kind)
     assert [o.kind for o in kinds] == ["door", "window"]
     assert kinds[0].height_m == pytest.approx(2.05, abs=0.08)
-    scene = opened_room(measured, built_in_library()).scene
+    scene = open_room(measured, built_in_library()).scene
     assert HEIGHT > 2.05
     for kind in ("door", "window"):
         (item,) = [o for o in scene.objects if o.category == kind]

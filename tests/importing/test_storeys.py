@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_room import open_room
 from diorama_core.importing.measured_types import MeasuredBox, MeasuredFloor, MeasuredRoom, MeasuredWall
-from diorama_core.importing.storeys import ceiling_planes, floor_planes, floors_below, measured_storeys
+from diorama_core.importing.storeys import ceiling_planes, floor_planes, floors_below, storeys_of
 from diorama_core.library.catalogue import built_in_library
 
 
@@ -32,7 +32,7 @@ def test_every_room_and_storey_has_its_floor_and_what_stands_on_it() -> None:
     made = [w for k, (r, z) in enumerate(rooms) for w in walls(r, z, z + 2.5, f"w{k}")]
     floors = tuple(MeasuredFloor(r, z) for r, z in rooms)
     boxes = (bed(1.5, 1.5, -1.35), bed(4.6, 1.5, -1.35), bed(1.5, 1.5, 1.45))
-    scene = opened_room(MeasuredRoom(tuple(made), boxes, floors=floors), built_in_library()).scene
+    scene = open_room(MeasuredRoom(tuple(made), boxes, floors=floors), built_in_library()).scene
     assert [p.id for p in scene.architecture.by_role("floor")] == ["floor", "floor-2", "floor-3"]
     assert len(scene.architecture.by_role("ceiling")) == 3
     held = [scene.support_of(o.id) for o in scene.objects]
@@ -48,19 +48,19 @@ def test_a_half_wall_leaves_the_ceiling_and_a_gable_is_said() -> None:
     outline = ring(0, 0, 5, 4)
     half = MeasuredWall("half", np.array([[1, 1, 0], [2, 1, 0], [2, 1, 0.8], [1, 1, 0.8]], float))
     room = MeasuredRoom((*walls(outline, 0, 2.5, "w"), half), (), floors=(MeasuredFloor(outline, 0.0),))
-    scene = opened_room(room, built_in_library()).scene
+    scene = open_room(room, built_in_library()).scene
     (ceiling,) = scene.architecture.by_role("ceiling")
     assert ceiling.centre[2] == pytest.approx(2.5)
     gable = MeasuredWall("g", np.array([[0, 0, 0], [5, 0, 0], [5, 0, 2.5], [2.5, 0, 3.6], [0, 0, 2.5]], float))
     attic = MeasuredRoom((gable, *walls(outline, 0, 2.5, "w")[1:]), (), floors=room.floors)
-    opened = opened_room(attic, built_in_library())
+    opened = open_room(attic, built_in_library())
     assert not opened.scene.architecture.by_role("ceiling")
     assert any("slopes" in line for line in opened.changes)
 
 
 def test_without_floors_the_walls_enclose_one() -> None:
     room = MeasuredRoom(tuple(walls(ring(0, 0), 0.5, 3.0, "w")), ())
-    (storey,) = measured_storeys(room)
+    (storey,) = storeys_of(room)
     assert storey.height_m == 0.5
     assert storey.outline is not None
     assert storey.outline.area == pytest.approx(9.0)

@@ -11,7 +11,7 @@ import pytest
 from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
 from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.cases import recipe as recipe_of_rooms
-from diorama_core.evaluation.benchmarks.views import RoomView, photographed
+from diorama_core.evaluation.benchmarks.views import RoomView, photograph
 from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.multiview import adding
@@ -98,7 +98,7 @@ def marked(view: RoomView, name: str, camera: Camera) -> FurtherPhoto:
 def made_views() -> tuple[RoomView, ...]:
     """A room photographed from four places."""
     tested = split_library(built_in_library(), "test")
-    return made_once("four views", lambda: tuple(photographed(recipe_of_rooms(3, 1, 101)[0], tested, 4, SMALL)))
+    return made_once("four views", lambda: tuple(photograph(recipe_of_rooms(3, 1, 101)[0], tested, 4, SMALL)))
 
 
 def marked_photos() -> list[FurtherPhoto]:

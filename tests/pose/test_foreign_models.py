@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from diorama_core.evaluation.metrics.pose import Alignment, Placed, pooled, scene_alignment
+from diorama_core.evaluation.metrics.pose import Alignment, Placed, pool, scene_alignment
 from diorama_core.library.ingest.relief import relief, symmetry_fold
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import resolve
@@ -98,7 +98,7 @@ def library(shared: Path, monkeypatch: pytest.MonkeyPatch) -> ForeignLibrary:
 
 def test_foreign_models_are_placed_where_they_stand(library: ForeignLibrary) -> None:
     trios = [SOME[k : k + 3] for k in range(0, len(SOME), 3)]
-    pairs = pooled([alignment(furnished(trio, seed), library)[0] for seed, trio in enumerate(trios)])
+    pairs = pool([alignment(furnished(trio, seed), library)[0] for seed, trio in enumerate(trios)])
     assert pairs.r_acc >= 0.8
     assert pairs.t_acc >= 0.9
     assert pairs.s_acc >= 0.8

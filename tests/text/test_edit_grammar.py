@@ -12,7 +12,7 @@ from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.grammar import furnished_room
-from diorama_core.text.compose import composed_room
+from diorama_core.text.compose import compose_room
 from diorama_core.text.edit_grammar import edits_of
 from diorama_core.text.edit_plan import Insert, Move, Paint, Place, Remove, Resize, Restyle, Shift, Swap, Turn
 from diorama_core.text.edit_wording import clauses_of
@@ -113,7 +113,7 @@ def test_what_should_be_is_made_so_and_ordinals_choose(living: Scene, dining: Sc
 
 
 def test_a_lamp_that_goes_somewhere_is_none_of_the_ceiling() -> None:
-    scene = composed_room("a living room with a sofa and a floor lamp", built_in_library()).scene
+    scene = compose_room("a living room with a sofa and a floor lamp", built_in_library()).scene
     assert {o.category for o in scene.objects} >= {"ceiling lamp", "floor lamp", "window"}
     library = built_in_library()
     moved = edits_of("move the lamp beside the sofa", scene, library)
@@ -156,9 +156,7 @@ def test_numbers_of_a_kind_are_changed(living: Scene, dining: Scene) -> None:
 
 def test_every_lamp_is_of_every_sort_and_everything_is_what_can_be_meant() -> None:
     library = built_in_library()
-    scene = composed_room(
-        "a sofa, a floor lamp, a wooden coffee table, a rug and a lamp on a side table", library
-    ).scene
+    scene = compose_room("a sofa, a floor lamp, a wooden coffee table, a rug and a lamp on a side table", library).scene
     (turned,) = edits_of("turn every lamp around", scene, library)
     assert isinstance(turned, Turn)
     assert {scene.object(i).category for i in turned.objects} == {"lamp", "floor lamp", "ceiling lamp"}

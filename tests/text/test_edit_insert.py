@@ -10,8 +10,8 @@ from diorama_core.editing.relations import Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Scene
-from diorama_core.text.compose import composed_room
-from diorama_core.text.edit_insert import RUG_MARGIN_M, inserted
+from diorama_core.text.compose import compose_room
+from diorama_core.text.edit_insert import RUG_MARGIN_M, insert
 from diorama_core.text.edit_plan import Insert, Place
 from tests.text.edited import assert_sound, done, living_room
 
@@ -46,7 +46,7 @@ def test_new_objects_go_where_they_are_wished(living: Scene, what: str, place: P
 
 
 def test_a_rug_is_as_large_as_what_it_goes_under(living: Scene) -> None:
-    outcome = inserted(
+    outcome = insert(
         Positioner(built_in_library()), living, Insert(what="rug"), [Relation("under", ("coffee_table_1",))]
     )
     rug, table = outcome.scene.object(outcome.touched[0]), living.object("coffee_table_1")
@@ -55,7 +55,7 @@ def test_a_rug_is_as_large_as_what_it_goes_under(living: Scene) -> None:
 
 def test_several_share_what_they_are_beside(living: Scene) -> None:
     relation = Relation("beside", ("sofa_1", "piano_1"))
-    outcome = inserted(Positioner(built_in_library()), living, Insert(what="basket", count=2), [relation])
+    outcome = insert(Positioner(built_in_library()), living, Insert(what="basket", count=2), [relation])
     frame = RoomFrame.of(outcome.scene)
     for object_id, target in zip(outcome.touched, relation.targets, strict=True):
         assert is_met(outcome.scene, object_id, Relation("beside", (target,)), frame)
@@ -64,10 +64,10 @@ def test_several_share_what_they_are_beside(living: Scene) -> None:
 
 def test_more_chairs_are_like_those_at_the_table_and_stand_there() -> None:
     library = built_in_library()
-    scene = composed_room("a large table with four chairs around it", library).scene
+    scene = compose_room("a large table with four chairs around it", library).scene
     table = next(o for o in scene.objects if o.category == "table")
     before = {o.id for o in scene.objects}
-    after = inserted(Positioner(library), scene, Insert(what="chair", count=2), ()).scene
+    after = insert(Positioner(library), scene, Insert(what="chair", count=2), ()).scene
     new = [o for o in after.objects if o.id not in before]
     assert {o.shape_id for o in new} == {o.shape_id for o in scene.objects if o.category == "chair"}
     for chair in new:

@@ -11,9 +11,9 @@ from diorama_core.text.edit_lengths import (
     HUNG_STEP_M,
     MAX_SHIFT_M,
     all_but,
-    counted_edits,
-    lifted,
+    lift,
     nearer,
+    quantity_edits,
     shift_of,
 )
 from diorama_core.text.edit_plan import Insert
@@ -48,8 +48,8 @@ def test_what_names_no_way_is_no_shift():
 
 
 def test_a_picture_is_lifted_and_lowered():
-    assert lifted(SELECTOR, "raise the clock by 20 cm", "the clock by 20 cm", named).up_m == pytest.approx(0.2)
-    assert lifted(SELECTOR, "lower the clock", "the clock", named).up_m == -HUNG_STEP_M
+    assert lift(SELECTOR, "raise the clock by 20 cm", "the clock by 20 cm", named).up_m == pytest.approx(0.2)
+    assert lift(SELECTOR, "lower the clock", "the clock", named).up_m == -HUNG_STEP_M
 
 
 def test_nearer_needs_an_object_to_go_nearer_to():
@@ -77,10 +77,10 @@ def test_some_are_spared(text: str, spared: tuple[int, str] | None) -> None:
 
 def test_more_of_a_kind_are_as_many_as_asked_and_not_too_many() -> None:
     selector = Selector(dining_room(), built_in_library())
-    assert counted_edits(selector, "double the chairs") == (Insert(what="chair", count=5),)
-    assert counted_edits(selector, "i want twice as many chairs") == (Insert(what="chair", count=5),)
-    assert counted_edits(selector, "remove the chairs") is None
+    assert quantity_edits(selector, "double the chairs") == (Insert(what="chair", count=5),)
+    assert quantity_edits(selector, "i want twice as many chairs") == (Insert(what="chair", count=5),)
+    assert quantity_edits(selector, "remove the chairs") is None
     with pytest.raises(EditRefused, match="15 more"):
-        counted_edits(selector, "quadruple the number of chairs")
+        quantity_edits(selector, "quadruple the number of chairs")
     with pytest.raises(EditRefused, match="no piano"):
-        counted_edits(selector, "double the number of pianos")
+        quantity_edits(selector, "double the number of pianos")

@@ -12,7 +12,7 @@ from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Scene
 from diorama_core.text.edit_plan import Align, Edit, Exchange, Measure, SetState, TypedEdit
-from diorama_core.text.edit_states import aligned, exchanged, measured, put_in_state
+from diorama_core.text.edit_states import exchange, line_up, put_in_state, set_side
 from diorama_core.text.edit_words_objects import object_edits, places_of_phrases
 from diorama_core.text.editing_by_words import apply_edits
 from diorama_core.text.phrases import PlacePhrase
@@ -95,17 +95,17 @@ POSITIONER = Positioner(built_in_library())
 
 def test_what_stands_on_something_higher_rises_with_it() -> None:
     scene = living_room()
-    after = measured(
+    after = set_side(
         POSITIONER, scene, ["sideboard_1"], Measure(objects=["sideboard_1"], side="height", to_m=0.9)
     ).scene
     top = after.object("sideboard_1").corners_world[:, 2].max()
     assert after.object("lamp_1").corners_world[:, 2].min() == pytest.approx(top, abs=0.02)
     with pytest.raises(EditRefused, match="cannot be 40"):
-        measured(POSITIONER, scene, ["lamp_1"], Measure(objects=["lamp_1"], side="height", to_m=40.0))
+        set_side(POSITIONER, scene, ["lamp_1"], Measure(objects=["lamp_1"], side="height", to_m=40.0))
 
 
 def test_exchanged_objects_meet_nothing() -> None:
-    after = exchanged(POSITIONER, living_room(), Exchange(objects=["piano_1", "sideboard_1"])).scene
+    after = exchange(POSITIONER, living_room(), Exchange(objects=["piano_1", "sideboard_1"])).scene
     assert_sound(living_room(), after)
 
 
@@ -113,7 +113,7 @@ def test_states_are_of_what_can_have_them() -> None:
     with pytest.raises(EditRefused, match="is no lamp"):
         put_in_state(built_in_library(), living_room(), ["sofa_1"], SetState(objects=["sofa_1"], state="on"))
     with pytest.raises(EditRefused, match="is alone"):
-        aligned(POSITIONER, living_room(), ["sofa_1"], Align(objects=["sofa_1"], how="in line"))
+        line_up(POSITIONER, living_room(), ["sofa_1"], Align(objects=["sofa_1"], how="in line"))
 
 
 def test_other_clauses_are_left_to_others() -> None:

@@ -9,7 +9,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.taxonomy import CATEGORIES
 from diorama_core.text.editing_by_words import propose_edits
 from diorama_core.text.foreign_words import LANGUAGES, _phrases, _words, to_english
-from diorama_core.text.prompt import understood_prompt
+from diorama_core.text.prompt import read_prompt
 from tests.text.edited import living_room
 
 ROOMS = {
@@ -23,14 +23,14 @@ ROOMS = {
 
 @pytest.mark.parametrize("prompt", ROOMS)
 def test_rooms_are_described_in_other_languages(prompt: str) -> None:
-    request = understood_prompt(prompt)
+    request = read_prompt(prompt)
     assert {o.category: o.count for o in request.objects} == ROOMS[prompt]
     assert request.ignored == ()
 
 
 @pytest.mark.parametrize("prompt", ["ein Wohnzimmer mit einem Sofa und zwei Zorkmids", "un salon avec un zorkmid"])
 def test_what_is_not_understood_is_named(prompt: str) -> None:
-    assert any("zorkmid" in words for words in understood_prompt(prompt).ignored)
+    assert any("zorkmid" in words for words in read_prompt(prompt).ignored)
 
 
 def test_every_kind_has_a_name_in_every_language() -> None:

@@ -10,8 +10,8 @@ from diorama_core.evaluation.metrics.text_scene import are_in_rows
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
-from diorama_core.text.compose import Composed, composed_room
-from diorama_core.text.placed_rows import placed_rows
+from diorama_core.text.compose import Composed, compose_room
+from diorama_core.text.placed_rows import place_rows
 from diorama_core.text.prompt import RequestedObject, Wish
 from diorama_core.text.rows import MAX_IN_ROWS
 
@@ -23,7 +23,7 @@ def in_rows(scene: Scene, category: str, rows: int, each: int) -> bool:
 @pytest.fixture(scope="module")
 def classroom() -> Composed:
     prompt = "two rows of three desks facing a whiteboard and a chair at each desk"
-    return composed_room(prompt, built_in_library())
+    return compose_room(prompt, built_in_library())
 
 
 def test_desks_stand_in_rows_with_room_for_their_chairs(classroom: Composed) -> None:
@@ -45,7 +45,7 @@ def test_a_member_that_leaves_its_row_is_seen(classroom: Composed) -> None:
 
 
 def test_a_row_stands_along_the_wall() -> None:
-    made = composed_room("a row of four chairs along the wall", built_in_library())
+    made = compose_room("a row of four chairs along the wall", built_in_library())
     assert not made.notes
     assert in_rows(made.scene, "chair", 1, 4)
 
@@ -54,10 +54,10 @@ def test_rows_without_room_and_wishes_that_the_whole_does_not_meet_are_named(cla
     library = built_in_library()
     positioner, shapes = Positioner(library), library.in_category("chair")[:2]
     many = RequestedObject("chair", "chairs", MAX_IN_ROWS, rows=1)
-    assert placed_rows(classroom.scene, many, shapes, positioner, {}) is None
+    assert place_rows(classroom.scene, many, shapes, positioner, {}) is None
     empty = replace(classroom.scene, objects=(), supports=())
     few = RequestedObject("chair", "chairs", 3, wishes=(Wish("against wall"),), rows=1)
-    rows = placed_rows(empty, few, shapes, positioner, {})
+    rows = place_rows(empty, few, shapes, positioner, {})
     assert rows is not None
     assert rows.unmet(rows.scene) == []
     away = replace(rows.block, pose=rows.block.pose.moved(rows.block.pose.R_world_object[:, 0]))

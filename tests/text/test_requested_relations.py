@@ -10,9 +10,9 @@ from diorama_core.scene.types import Scene
 from diorama_core.text.prompt import RequestedObject, Wish
 from diorama_core.text.requested_relations import (
     is_sat_around,
+    place_seat,
     placement_order,
     row_relations,
-    seated,
     seats_at,
     stands_between,
     targets_of,
@@ -107,6 +107,6 @@ def test_a_round_table_has_no_places_and_a_seat_knows_its_own() -> None:
     assert seats_at((1.0, 1.0, 0.74), 4) == ()
     scene = Scene(objects=(item("table", (0.9, 2.0, 0.74), 0.0, 0.0),))
     chairs = RequestedObject("chair", "chair", 4)
-    places = {seated(scene, [Relation("around", ("table",))], chairs, k)[0].seat_m for k in range(4)}
+    places = {place_seat(scene, [Relation("around", ("table",))], chairs, k)[0].seat_m for k in range(4)}
     assert len(places) == 4
     assert None not in places

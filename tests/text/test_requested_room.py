@@ -12,9 +12,9 @@ from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish
 from diorama_core.text.requested_room import (
     SEAT_WIDTH_M,
     TALL_PLANT_M,
-    dressed,
+    dress,
     empty_room,
-    requested_shapes,
+    shapes_for,
     with_essentials,
 )
 from tests.text.edited import living_room
@@ -69,7 +69,7 @@ def test_every_room_has_a_door_and_as_many_windows_as_are_asked_for() -> None:
 
 def shapes(*wanted: RequestedObject, seed: int = 0) -> tuple[Shape, ...]:
     """For the first of them."""
-    return requested_shapes(built_in_library(), np.random.default_rng(seed), wanted[0], wanted)
+    return shapes_for(built_in_library(), np.random.default_rng(seed), wanted[0], wanted)
 
 
 def test_plants_stand_on_the_floor_unless_they_are_put_on_something() -> None:
@@ -105,5 +105,5 @@ def test_a_single_bed_is_narrow() -> None:
 def test_colours_that_a_shape_lacks_are_painted_on() -> None:
     scene = living_room()
     shape = next(s for s in built_in_library().in_category("sofa") if s.id == scene.object("sofa_1").shape_id)
-    assert dressed(scene, "sofa_1", shape, ("purple",)).object("sofa_1").colour is not None
-    assert dressed(scene, "sofa_1", shape, ("dark", "zorkmid")) is scene
+    assert dress(scene, "sofa_1", shape, ("purple",)).object("sofa_1").colour is not None
+    assert dress(scene, "sofa_1", shape, ("dark", "zorkmid")) is scene

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.scene.types import Pose
-from diorama_core.text.prompt import Wish, understood_prompt
+from diorama_core.text.prompt import Wish, read_prompt
 from diorama_core.text.rows import MAX_IN_ROWS, Rows, with_marks
 
 SIZE = np.array([0.6, 1.2, 0.75])
@@ -26,22 +26,22 @@ SIZE = np.array([0.6, 1.2, 0.75])
     ],
 )
 def test_rows_are_read(prompt: str, count: int, rows: int) -> None:
-    request = understood_prompt(prompt)
+    request = read_prompt(prompt)
     desks = request.objects[0]
     assert (desks.category, desks.count, desks.rows) == ("desk", count, rows)
     assert not request.ignored
 
 
 def test_what_hangs_or_is_a_row_itself_stands_in_none() -> None:
-    pictures = understood_prompt("a row of pictures above the sofa").objects[0]
+    pictures = read_prompt("a row of pictures above the sofa").objects[0]
     assert (pictures.count, pictures.rows) == (3, 0)
     assert Wish("aligned with", each_other=True) in pictures.wishes
-    books = understood_prompt("a row of books on a shelf").objects[0]
+    books = read_prompt("a row of books on a shelf").objects[0]
     assert (books.count, books.rows) == (1, 0)
 
 
 def test_rows_that_hold_too_many_are_named() -> None:
-    request = understood_prompt("six rows of ten chairs")
+    request = read_prompt("six rows of ten chairs")
     assert request.ignored == ("six rows of ten",)
     assert request.objects[0].rows == 0
 

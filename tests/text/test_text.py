@@ -19,12 +19,12 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.taxonomy import CATEGORIES, category
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.scene.support import check_scene
-from diorama_core.text.compose import composed_room
+from diorama_core.text.compose import compose_room
 from diorama_core.text.customs import ESSENTIALS, stands_in_for, usual_relations_of
 from diorama_core.text.language import LOOKS
 from diorama_core.text.pictures import ImageSettings, picture_of
-from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, understood_prompt
-from diorama_core.text.scene_from_text import finished, scene_from_text
+from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, read_prompt
+from diorama_core.text.scene_from_text import finish, scene_from_text
 from tests.perception.language.stub_lmm import StubLmm, answering
 
 READINGS = {
@@ -50,7 +50,7 @@ READINGS = {
 
 @pytest.mark.parametrize("prompt", list(READINGS))
 def test_prompts_are_understood(prompt: str) -> None:
-    request = understood_prompt(prompt)
+    request = read_prompt(prompt)
     room, counts = READINGS[prompt]
     assert request.room == room
     assert {t.category: t.count for t in request.objects} == counts
@@ -58,11 +58,11 @@ def test_prompts_are_understood(prompt: str) -> None:
 
 
 def test_places_and_appearance_are_read() -> None:
-    objects = {t.category: t for t in understood_prompt("a blue sofa, a picture above the sofa").objects}
+    objects = {t.category: t for t in read_prompt("a blue sofa, a picture above the sofa").objects}
     assert objects["sofa"].appearance == ("blue",)
     assert objects["picture"].wishes == (Wish("above", ("sofa",)),)
-    assert understood_prompt("an elephant beside a piano").ignored == ("elephant",)
-    vase = next(t for t in understood_prompt("a table and a sideboard with a vase on it").objects if t.label == "vase")
+    assert read_prompt("an elephant beside a piano").ignored == ("elephant",)
+    vase = next(t for t in read_prompt("a table and a sideboard with a vase on it").objects if t.label == "vase")
     assert vase.wishes == (Wish("on", ("sideboard",)),)
 
 
@@ -75,7 +75,7 @@ def test_places_and_appearance_are_read() -> None:
     ],
 )
 def test_tables_have_seats_for_as_many_as_they_are_for(prompt: str, seats: int) -> None:
-    kinds = Counter({o.category: o.count for o in understood_prompt(prompt).objects})
+    kinds = Counter({o.category: o.count for o in read_prompt(prompt).objects})
     assert kinds["chair"] + kinds["stool"] == seats
 
 
@@ -90,7 +90,7 @@ def test_tables_have_seats_for_as_many_as_they_are_for(prompt: str, seats: int) 
     ],
 )
 def test_as_many_are_asked_for_as_people_mean(prompt: str, counts: dict[str, int]) -> None:
-    request = understood_prompt(prompt)
+    request = read_prompt(prompt)
     assert {o.category: o.count for o in request.objects} == counts
     assert not request.ignored
     assert [o.rows for o in request.objects if o.label == "desks"] == ([3] if "rows" in prompt else [])
@@ -105,13 +105,13 @@ def test_as_many_are_asked_for_as_people_mean(prompt: str, counts: dict[str, int
     ],
 )
 def test_rooms_do_without_what_they_are_to_do_without(prompt: str, absent: set[str]) -> None:
-    made = composed_room(prompt, built_in_library())
+    made = compose_room(prompt, built_in_library())
     assert set(made.request.excluded) == absent
     assert not absent & {o.category for o in made.scene.objects}
 
 
 def test_tables_are_large_enough_for_their_seats() -> None:
-    made = composed_room("a table with eight chairs around it", built_in_library())
+    made = compose_room("a table with eight chairs around it", built_in_library())
     table = next(o for o in made.scene.objects if o.category == "table")
     chairs = [o for o in made.scene.objects if o.category == "chair"]
     assert len(chairs) == 8
@@ -122,7 +122,7 @@ def test_tables_are_large_enough_for_their_seats() -> None:
 
 
 def test_a_television_stays_at_its_wall_in_a_large_room() -> None:
-    made = composed_room("a huge living room with a sofa facing a television on a tv stand", built_in_library())
+    made = compose_room("a huge living room with a sofa facing a television on a tv stand", built_in_library())
     frame = RoomFrame.of(made.scene)
     stand = next(o for o in made.scene.objects if o.category == "tv stand")
     assert not made.notes
@@ -130,18 +130,18 @@ def test_a_television_stays_at_its_wall_in_a_large_room() -> None:
 
 
 def test_arrangements_that_are_no_relation_are_named() -> None:
-    assert understood_prompt("a study with an L of two desks").ignored == ("l of",)
+    assert read_prompt("a study with an L of two desks").ignored == ("l of",)
 
 
 @given(st.text(max_size=120))
 def test_any_text_is_read_without_complaint(text: str) -> None:
-    request = understood_prompt(text)
+    request = read_prompt(text)
     assert all(1 <= t.count <= 12 for t in request.objects)
 
 
 @pytest.mark.parametrize("prompt", [p for p in READINGS if READINGS[p][1]])
 def test_rooms_hold_what_was_asked_for(prompt: str) -> None:
-    room = composed_room(prompt, built_in_library())
+    room = compose_room(prompt, built_in_library())
     check_scene(room.scene)
     counts = Counter(o.category for o in room.scene.objects)
     for name, wanted in READINGS[prompt][1].items():
@@ -150,13 +150,13 @@ def test_rooms_hold_what_was_asked_for(prompt: str) -> None:
 
 def test_the_same_words_give_the_same_room_and_another_seed_another() -> None:
     prompt = "a bedroom with a bed and a wardrobe"
-    first, again, other = (composed_room(prompt, built_in_library(), seed) for seed in (0, 0, 1))
+    first, again, other = (compose_room(prompt, built_in_library(), seed) for seed in (0, 0, 1))
     assert first.scene == again.scene
     assert first.scene != other.scene
 
 
 def test_beds_side_by_side_lie_the_same_way_at_one_wall() -> None:
-    scene = composed_room(
+    scene = compose_room(
         "a twin bedroom with two beds, each with a night stand, and a wardrobe", built_in_library()
     ).scene
     first, second = (o for o in scene.objects if o.category == "bed")
@@ -167,7 +167,7 @@ def test_beds_side_by_side_lie_the_same_way_at_one_wall() -> None:
 
 
 def test_lamps_stand_on_their_night_stands() -> None:
-    room = composed_room("a double bed, two night stands and a lamp on each night stand", built_in_library())
+    room = compose_room("a double bed, two night stands and a lamp on each night stand", built_in_library())
     holders = [s.parent for s in room.scene.supports if s.child.startswith("lamp")]
     assert len(set(holders)) == 2
     assert all(h.startswith("night_stand") for h in holders)
@@ -202,14 +202,14 @@ WISHES = {
 @pytest.mark.parametrize("prompt", list(WISHES))
 def test_relations_are_read(prompt: str) -> None:
     name, wish = WISHES[prompt]
-    request = understood_prompt(prompt)
+    request = read_prompt(prompt)
     assert request.ignored == ()
     assert next(o for o in request.objects if o.category == name).wishes == (wish,)
 
 
 @pytest.mark.parametrize("prompt", list(WISHES))
 def test_relations_are_met_or_named(prompt: str) -> None:
-    room = composed_room(prompt, built_in_library())
+    room = compose_room(prompt, built_in_library())
     check_scene(room.scene)
     frame = RoomFrame.of(room.scene)
     name, wish = WISHES[prompt]
@@ -223,7 +223,7 @@ def test_relations_are_met_or_named(prompt: str) -> None:
 
 def test_what_has_no_place_is_named() -> None:
     wardrobes = (RequestedObject("wardrobe", "wardrobe", 1, (), (Wish("on", ("cup",)),)), RequestedObject("cup", "cup"))
-    room = composed_room("x", built_in_library(), request=RoomRequest("living", wardrobes))
+    room = compose_room("x", built_in_library(), request=RoomRequest("living", wardrobes))
     assert any("wardrobe" in note for note in room.notes)
 
 
@@ -236,15 +236,15 @@ def test_customs_name_known_categories() -> None:
 
 
 def test_rooms_of_a_kind_have_what_they_need() -> None:
-    kitchen = composed_room("a kitchen with a round table", built_in_library())
+    kitchen = compose_room("a kitchen with a round table", built_in_library())
     assert {"stove", "refrigerator", "kitchen counter"} <= {o.category for o in kitchen.scene.objects}
     assert set(kitchen.added) == {"stove", "refrigerator", "kitchen counter"}
 
 
 def test_a_scene_from_text_is_the_composed_room_with_a_camera() -> None:
     made = scene_from_text("two armchairs and a round table", built_in_library())
-    composed = composed_room("two armchairs and a round table", built_in_library())
-    assert finished(composed.scene, built_in_library())[0] == made.scene
+    composed = compose_room("two armchairs and a round table", built_in_library())
+    assert finish(composed.scene, built_in_library())[0] == made.scene
     assert made.scene.camera is not None
     assert {p.texture for p in made.scene.architecture.planes} <= set(made.textures)
     assert Counter(o.category for o in made.scene.objects)["armchair"] == 2
@@ -281,7 +281,7 @@ def test_bad_replies_leave_the_room_to_the_grammar(answer: str | int) -> None:
 
 
 def test_armchairs_gather_around_a_table() -> None:
-    room = composed_room("two armchairs and a round table", built_in_library()).scene
+    room = compose_room("two armchairs and a round table", built_in_library()).scene
     table = next(o for o in room.objects if o.category == "table")
     for chair in (o for o in room.objects if o.category == "armchair"):
         away = table.pose.position[:2] - chair.pose.position[:2]
@@ -321,21 +321,21 @@ def test_unusable_prompts_are_one_clear_line(prompt: str) -> None:
 
 
 def test_desks_at_opposite_walls_look_at_each_other() -> None:
-    desks = understood_prompt("an office with two desks against opposite walls").objects[0]
+    desks = read_prompt("an office with two desks against opposite walls").objects[0]
     assert Wish("against wall") in desks.wishes
     assert Wish("opposite", each_other=True) in desks.wishes
-    shelves = understood_prompt("four bookshelves aligned along the wall").objects[0]
+    shelves = read_prompt("four bookshelves aligned along the wall").objects[0]
     assert Wish("aligned with", each_other=True) in shelves.wishes
 
 
 def test_a_round_table_is_as_wide_as_deep() -> None:
-    scene = composed_room("a round coffee table and an armchair", built_in_library()).scene
+    scene = compose_room("a round coffee table and an armchair", built_in_library()).scene
     table = next(o for o in scene.objects if o.category == "coffee table")
     assert max(table.size_m[:2]) < 1.15 * min(table.size_m[:2])
 
 
 def test_night_stands_and_armchairs_are_where_people_put_them() -> None:
-    scene = composed_room("a bedroom with a double bed and two night stands beside the bed", built_in_library()).scene
+    scene = compose_room("a bedroom with a double bed and two night stands beside the bed", built_in_library()).scene
     bed = next(o for o in scene.objects if o.category == "bed")
     sides = [
         (bed.pose.R_world_object.T @ (o.pose.position - bed.pose.position))[1]
@@ -347,7 +347,7 @@ def test_night_stands_and_armchairs_are_where_people_put_them() -> None:
 
 
 def test_what_is_unknown_is_named_wherever_it_is_listed() -> None:
-    request = understood_prompt("a bedroom with two lamps, a wardrobe and a helicopter, all facing the window")
+    request = read_prompt("a bedroom with two lamps, a wardrobe and a helicopter, all facing the window")
     assert [o.category for o in request.objects][:2] == ["lamp", "wardrobe"]
     assert request.ignored == ("helicopter",)
-    assert understood_prompt("a sofa, cosy and bright, by the window").ignored == ()
+    assert read_prompt("a sofa, cosy and bright, by the window").ignored == ()

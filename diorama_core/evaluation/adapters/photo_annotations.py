@@ -90,7 +90,7 @@ def read_annotations(path: Path) -> dict[str, AnnotatedPhoto]:
     Raises:
         InputError: one line, where the file is not laid out as the module says.
     """
-    photos = _validated(_ANNOTATIONS.validate_python, path)
+    photos = _validate(_ANNOTATIONS.validate_python, path)
     for name, photo in photos.items():
         for index, annotated in enumerate(photo.objects):
             if isinstance(annotated.on, int) and not 0 <= annotated.on < len(photo.objects):
@@ -107,7 +107,7 @@ def read_intrinsics(folder: Path) -> dict[str, tuple[float, float, float, float]
     path = folder / "photos.json"
     if not path.is_file():
         return {}
-    return {record.id: record.K for record in _validated(_RECORDS.validate_python, path) if record.K is not None}
+    return {record.id: record.K for record in _validate(_RECORDS.validate_python, path) if record.K is not None}
 
 
 def picture_of(folder: Path, name: str) -> Path | None:
@@ -116,7 +116,7 @@ def picture_of(folder: Path, name: str) -> Path | None:
     return next((path for path in named if path.is_file()), None)
 
 
-def _validated(validate: Callable[[object], T], path: Path) -> T:
+def _validate(validate: Callable[[object], T], path: Path) -> T:
     try:
         return validate(read_json(path))
     except ValidationError as error:

@@ -16,7 +16,7 @@ from diorama_core.evaluation.benchmarks.photo_build import PhotoScores
 from diorama_core.evaluation.benchmarks.photo_tables import OF_OBJECTS
 from diorama_core.evaluation.benchmarks.photos import PhotoPlan
 from diorama_core.evaluation.benchmarks.system_tables import CaseResult
-from diorama_core.evaluation.metrics.pose import pooled
+from diorama_core.evaluation.metrics.pose import pool
 from diorama_core.evaluation.reports.tables import Interval, paired_interval
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.settings import with_settings
@@ -43,7 +43,7 @@ class Change:
     """90 %, paired; None with fewer than two photos or rooms."""
 
 
-def built(
+def build(
     values: Mapping[str, float],
     plan: PhotoPlan,
     library: ShapeLibrary,
@@ -125,4 +125,4 @@ def _change(
 
 
 def _own_acc(rooms: Sequence[CaseResult]) -> float:
-    return pooled([case.scores.pairs for case in rooms]).acc
+    return pool([case.scores.pairs for case in rooms]).acc

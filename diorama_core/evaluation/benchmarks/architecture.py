@@ -15,7 +15,7 @@ from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.architecture.rac.stage import RenderAndCompareRoom
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import LeftOut, attempted, recipe
+from diorama_core.evaluation.benchmarks.cases import LeftOut, make_views, recipe
 from diorama_core.evaluation.metrics.architecture import ArchitectureScores, architecture_scores
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Column, Row, Table, bootstrap_interval, paper_rows
@@ -87,15 +87,15 @@ def run(
     left_out: list[LeftOut] = []
     series = {case.name: seed for seed in seeds for case in recipe(scenes, 1, seed)}
     cases = tuple(case for seed in seeds for case in recipe(scenes, 1, seed))
-    for k, (case, view) in enumerate(attempted(cases, library, left_out)):
+    for k, (case, view) in enumerate(make_views(cases, library, left_out)):
         progress.report(k / len(cases), case.name)
-        noisy = replace(view.inputs, depth_m=sensed(view.inputs.depth_m, case.seed))
+        noisy = replace(view.inputs, depth_m=sense(view.inputs.depth_m, case.seed))
         rows: tuple[tuple[str, Inputs, ArchitectureStage | None], ...] = (
             ("true masks and depth", view.inputs, None),
             ("true masks, depth with 2 % noise", noisy, None),
             ("PlainRecon as published, true masks and depth", view.inputs, PlainRecon()),
             ("PlainRecon as published, true masks, depth with 2 % noise", noisy, PlainRecon()),
-            ("PlainRecon as published, depth of the empty room", _emptied(view), PlainRecon()),
+            ("PlainRecon as published, depth of the empty room", _empty(view), PlainRecon()),
             ("RaC, true masks and depth", view.inputs, RenderAndCompareRoom()),
             ("RaC, true masks, depth with 2 % noise", noisy, RenderAndCompareRoom()),
             ("RaC without refinement, true masks and depth", view.inputs, RenderAndCompareRoom(refine=False)),
@@ -111,7 +111,7 @@ def run(
     return ArchitectureBench(tuple(seeds), by_name, tuple(left_out))
 
 
-def sensed(depth_m: Float32[np.ndarray, "h w"] | None, seed: int) -> Float32[np.ndarray, "h w"]:
+def sense(depth_m: Float32[np.ndarray, "h w"] | None, seed: int) -> Float32[np.ndarray, "h w"]:
     """True depth as a sensor would give it: relative noise at every pixel, and steps of disparity."""
     if depth_m is None:
         raise ValueError("there is no depth to add noise to")
@@ -121,7 +121,7 @@ def sensed(depth_m: Float32[np.ndarray, "h w"] | None, seed: int) -> Float32[np.
     return np.where(depth_m > 0, BASELINE_STEPS / np.maximum(steps, 1.0), 0.0).astype(np.float32)
 
 
-def _emptied(view: TruthView) -> Inputs:
+def _empty(view: TruthView) -> Inputs:
     """What perfect inpainting and a perfect depth network would give PlainRecon: the room without its objects."""
     return replace(view.inputs, depth_m=view.room_depth_m, instances=None, instance_boxes=(), boxes=())
 

@@ -50,14 +50,14 @@ def recipe(scenes: int = STANDARD_SCENES, views: int = VIEWS, seed: int = 0) -> 
     )
 
 
-def furnished(case: Case, library: ShapeLibrary) -> Scene:
+def furnish(case: Case, library: ShapeLibrary) -> Scene:
     """The room of a case, in the finishes and styles reserved for tests."""
     return furnished_room(case.seed, case.kind, library, split="test")
 
 
 def studio_of(case: Case, library: ShapeLibrary, size: tuple[int, int] = SIZE) -> tuple[Studio, tuple[Camera, ...]]:
     """The room of a case ready to be photographed, and where from."""
-    scene = furnished(case, library)
+    scene = furnish(case, library)
     return Studio(scene, library), sample_cameras(scene, library, case.seed, max(VIEWS, case.view + 1), size)
 
 
@@ -86,7 +86,7 @@ class LeftOut:
     reason: str
 
 
-def attempted(
+def make_views(
     cases: tuple[Case, ...], library: ShapeLibrary, left_out: list[LeftOut]
 ) -> Iterator[tuple[Case, TruthView]]:
     """`views_of`, going on with the next room where one cannot be furnished or photographed.
@@ -96,10 +96,12 @@ def attempted(
         library: What rooms are furnished from.
         left_out: Receives what could not be made.
     """
-    return ((case, view) for case, (_, view) in made(cases, lambda case: next(views_of((case,), library)), left_out))
+    return ((case, view) for case, (_, view) in attempt(cases, lambda c: next(views_of((c,), library)), left_out))
 
 
-def made(cases: tuple[Case, ...], make: Callable[[Case], Made], left_out: list[LeftOut]) -> Iterator[tuple[Case, Made]]:
+def attempt(
+    cases: tuple[Case, ...], make: Callable[[Case], Made], left_out: list[LeftOut]
+) -> Iterator[tuple[Case, Made]]:
     """Whatever is made of each case, going on with the next one where that fails.
 
     Args:

@@ -79,7 +79,7 @@ class LocalResult:
     image_iou: float
     relation: float | None
     """Share of annotated supporters that were found; None where not annotated."""
-    aligned: tuple[tuple[str, bool], ...]
+    alignments: tuple[tuple[str, bool], ...]
     """For every aligned model its category and whether an object of it stands there (20 cm, 20 degrees, 20 %)."""
     structure: float
     supported: float
@@ -99,7 +99,7 @@ class LocalBench:
     def tables(self) -> tuple[Table, ...]:
         """What was measured; for Scan2CAD the paper's table by category too."""
         scenes = local_table(self.dataset, self.results)
-        return (scenes, aligned_table(self.results)) if self.dataset == "scan2cad" else (scenes,)
+        return (scenes, alignment_table(self.results)) if self.dataset == "scan2cad" else (scenes,)
 
     def to_json(self) -> dict[str, object]:
         """Tables and every picture."""
@@ -129,7 +129,7 @@ def run(
     results = []
     for k, case in enumerate(islice(local_cases(dataset, path), scenes)):
         progress.report(min(k / scenes, 1.0), case.name)
-        results.append(_measured(case, library, progress))
+        results.append(_measure(case, library, progress))
     if not results:
         raise InputError(f"{path}: no picture of {dataset} is there; give a folder laid out as it is published")
     progress.report(1.0, "done")
@@ -162,7 +162,7 @@ def _ssdb_case(scene: SsdbScene) -> LocalCase:
     return LocalCase(scene.name, scene.inputs, parents)
 
 
-def _measured(case: LocalCase, library: ShapeLibrary, progress: Progress) -> LocalResult:
+def _measure(case: LocalCase, library: ShapeLibrary, progress: Progress) -> LocalResult:
     asked = [number for number, _ in case.inputs.instance_boxes]
     models = () if case.frame is None else tuple(m for m in case.frame.models if _is_in_picture(m, case.frame))
     begun = time.process_time()
@@ -179,7 +179,7 @@ def _measured(case: LocalCase, library: ShapeLibrary, progress: Progress) -> Loc
             sum(n in by_mask for n in asked),
             mean_mask_iou(pairs, scene, library, None),
             _relation(case, scene, by_mask),
-            () if case.frame is None else aligned(models, scene, case.frame),
+            () if case.frame is None else alignments(models, scene, case.frame),
             structure_of(scene, library)["structure"],
             supported_share(scene, library),
             out_of_bounds_share(scene),
@@ -211,7 +211,7 @@ def _relation(case: LocalCase, scene: Scene, by_mask: dict[int, SceneObject]) ->
     return right / len(case.parents) if case.parents else 1.0
 
 
-def aligned(models: Sequence[AlignedModel], scene: Scene, frame: ScanFrame) -> tuple[tuple[str, bool], ...]:
+def alignments(models: Sequence[AlignedModel], scene: Scene, frame: ScanFrame) -> tuple[tuple[str, bool], ...]:
     """For every model whether some object of its category is within 20 cm, 20 degrees and 20 %; each is used once."""
     if scene.camera is not None:
         scene = moved(scene, frame.camera.T_world_camera @ scene.camera.T_camera_world)
@@ -261,7 +261,7 @@ def local_table(dataset: Dataset, results: Sequence[LocalResult]) -> Table:
     return Table(f"Scenes of {dataset}", columns, (row,), "Pictures that fail count as wrong in every share.")
 
 
-def aligned_table(results: Sequence[LocalResult]) -> Table:
+def alignment_table(results: Sequence[LocalResult]) -> Table:
     """Percent of Scan2CAD's models aligned, by category (paper, supplement)."""
     rows = [(scan2cad_class(name), hit) for r in results for name, hit in r.aligned]
     by = {c: [hit for name, hit in rows if (name if name in paper.CATEGORIES else "others") == c] for c in

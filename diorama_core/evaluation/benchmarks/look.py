@@ -21,7 +21,7 @@ from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.appearance.photo_appearance import PhotoAppearance
 from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import attempted, recipe
+from diorama_core.evaluation.benchmarks.cases import make_views, recipe
 from diorama_core.evaluation.benchmarks.pose_comparison import (
     ESTIMATED_DEPTH,
     REMOVED,
@@ -154,7 +154,7 @@ def run(
     spent: dict[str, list[tuple[float, float, int]]] = {given: [] for given in GIVEN}
     lights: list[tuple[str, float]] = []
     cases = recipe(scenes, 1, seed)
-    for number, (case, view) in enumerate(attempted(cases, library, [])):
+    for number, (case, view) in enumerate(make_views(cases, library, [])):
         for turn, given in enumerate(GIVEN):
             progress.report((number + turn / len(GIVEN)) / len(cases), f"{case.name}: {given}")
             try:
@@ -207,13 +207,13 @@ def _one_room(
             pair = before.object(item.id), after.object(item.id)
             masks = [pixels == _index(scene, item.id) for scene, pixels in shown]
             colours = _colours(view, index, masks, differences)
-            looks.append(_measured(name, given, view, index, pair, seen.geometry.camera, colours, library))
+            looks.append(_measure(name, given, view, index, pair, seen.geometry.camera, colours, library))
     true_light = main_light(room_light(view.scene), np.array([view.scene.objects[k].pose.position for k in view.asked]))
     off_deg = light_error_deg(true_light, view.camera, look.light, seen.geometry.camera)
     return looks, (made_s, materials_s, len(seen.objects)), off_deg
 
 
-def _measured(
+def _measure(
     name: str,
     given: str,
     view: TruthView,

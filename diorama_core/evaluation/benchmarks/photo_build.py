@@ -27,9 +27,9 @@ from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.artefacts import DetectedObject
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto
-from diorama_core.evaluation.benchmarks.photo_perturbations import AnnotatedInputs, perturbed
+from diorama_core.evaluation.benchmarks.photo_perturbations import AnnotatedInputs, perturb
 from diorama_core.evaluation.benchmarks.system import Show
-from diorama_core.evaluation.metrics.annotated import ObjectResult, measured, not_built
+from diorama_core.evaluation.metrics.annotated import ObjectResult, measure, not_built
 from diorama_core.evaluation.metrics.colour import delta_e_2000, lab_of, visible_colours
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.code_key import code_key
@@ -256,7 +256,7 @@ def annotated_inputs(task: PhotoTask) -> AnnotatedInputs:
         raise InputError(f"{task.path}: the annotations are of a picture of {expected} pixels, this one has {actual}")
     size = (inputs.photo.width, inputs.photo.height)
     case = AnnotatedInputs(inputs, stated.scaled(size), tuple(range(len(stated.objects))))
-    return perturbed(case, task.perturbation) if task.perturbation else case
+    return perturb(case, task.perturbation) if task.perturbation else case
 
 
 def _objects(name: str, case: AnnotatedInputs, built: Built, library: ShapeLibrary) -> tuple[ObjectResult, ...]:
@@ -267,7 +267,7 @@ def _objects(name: str, case: AnnotatedInputs, built: Built, library: ShapeLibra
     shown = visible_colours(built.scene, library, built.textures)
     in_light = {key: built.illuminant.lit(colour) for key, colour in shown.items()}
     results = (
-        measured(name, i, annotated, by_index[i], built.scene, library, index_of, in_light.get(by_index[i].id))
+        measure(name, i, annotated, by_index[i], built.scene, library, index_of, in_light.get(by_index[i].id))
         if i in by_index
         else not_built(name, i, annotated, opening=i not in furniture)
         for i, annotated in enumerate(case.annotation.objects)

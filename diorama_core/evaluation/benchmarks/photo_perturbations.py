@@ -52,55 +52,55 @@ class AnnotatedInputs:
 Perturbation = Callable[[AnnotatedInputs, np.random.Generator], AnnotatedInputs]
 
 
-def perturbed(case: AnnotatedInputs, name: str, seed: int = 0) -> AnnotatedInputs:
+def perturb(case: AnnotatedInputs, name: str, seed: int = 0) -> AnnotatedInputs:
     """The case under a perturbation of `PERTURBATIONS`; the same for the same photo, name and seed."""
     key = zlib.crc32(f"{seed} {name} {case.inputs.photo.name}".encode())
     return PERTURBATIONS[name](case, np.random.default_rng(key))
 
 
-def mirrored(case: AnnotatedInputs, _: np.random.Generator) -> AnnotatedInputs:
+def mirror(case: AnnotatedInputs, _: np.random.Generator) -> AnnotatedInputs:
     """Left and right exchanged."""
     width = case.inputs.photo.width
     rgb = np.ascontiguousarray(case.inputs.photo.rgb[:, ::-1])
     camera = case.inputs.intrinsics
     camera = None if camera is None else replace(camera, cx=width - camera.cx)
-    case = _reframed(case, rgb, lambda box: (width - box[2], box[1], width - box[0], box[3]), camera)
-    return _with_objects(case, [_turned(annotated) for annotated in case.annotation.objects])
+    case = _reframe(case, rgb, lambda box: (width - box[2], box[1], width - box[0], box[3]), camera)
+    return _with_objects(case, [_turn(annotated) for annotated in case.annotation.objects])
 
 
-def jittered(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
+def jitter(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
     """Given boxes whose edges are off; the annotation stays where it was."""
     photo = case.inputs.photo
 
-    def moved(box: Box) -> Box:
+    def move(box: Box) -> Box:
         extent = np.tile([box[2] - box[0], box[3] - box[1]], 2)
         x1, y1, x2, y2 = np.array(box) + JITTER * extent * rng.standard_normal(4)
         x1, y1 = min(max(x1, 0.0), photo.width - 2.0), min(max(y1, 0.0), photo.height - 2.0)
         return float(x1), float(y1), float(min(max(x2, x1 + 2), photo.width)), float(min(max(y2, y1 + 2), photo.height))
 
-    boxes = tuple(replace(b, box=moved(b.box)) for b in case.inputs.boxes)
+    boxes = tuple(replace(b, box=move(b.box)) for b in case.inputs.boxes)
     return replace(case, inputs=replace(case.inputs, boxes=boxes))
 
 
-def dropped(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
+def drop(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
     """A quarter of the boxes not given; what such an object carries has an unknown supporter."""
     count = len(case.annotation.objects)
     out = rng.permutation(count)[: round(DROPPED * count)]
     return with_only(case, [k for k in range(count) if k not in set(out.tolist())])
 
 
-def exposed(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
+def expose(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
     """Lighter or darker, and warmer or cooler."""
     warm = float(np.sqrt(WHITE_BALANCE)) ** rng.choice([-1, 1])
     gain = 2.0 ** (EXPOSURE_STOPS * rng.choice([-1, 1])) * np.array([warm, 1.0, 1.0 / warm])
     table = np.stack([_lit(np.arange(256) / 255.0, channel) for channel in gain], axis=-1)
     shown = np.rint(255 * table).astype(np.uint8)
     rgb = np.stack([shown[case.inputs.photo.rgb[..., c], c] for c in range(3)], axis=-1)
-    case = _reframed(case, rgb, lambda box: box, case.inputs.intrinsics)
-    return _with_objects(case, [_recoloured(annotated, gain) for annotated in case.annotation.objects])
+    case = _reframe(case, rgb, lambda box: box, case.inputs.intrinsics)
+    return _with_objects(case, [_recolour(annotated, gain) for annotated in case.annotation.objects])
 
 
-def rolled(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
+def roll(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
     """The camera turned about its axis; the picture's edges are continued by reflection."""
     photo, camera = case.inputs.photo, case.inputs.intrinsics
     centre = (photo.width / 2, photo.height / 2) if camera is None else (camera.cx, camera.cy)
@@ -109,15 +109,15 @@ def rolled(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
     size = (photo.width, photo.height)
     rgb = cv2.warpAffine(photo.rgb, A, size, flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REFLECT_101)
 
-    def moved(box: Box) -> Box:
+    def move(box: Box) -> Box:
         points = _octagon(box) @ A[:, :2].T + A[:, 2]
         (x1, y1), (x2, y2) = points.min(axis=0), points.max(axis=0)
         return float(x1), float(y1), float(x2), float(y2)
 
-    return _reframed(case, rgb, moved, camera)
+    return _reframe(case, rgb, move, camera)
 
 
-def cropped(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
+def crop(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
     """Every side cut by up to an eighth; objects of which too little is left are not marked."""
     photo, camera = case.inputs.photo, case.inputs.intrinsics
     left, top, right, bottom = rng.uniform(0, CROPPED, 4) * np.tile([photo.width, photo.height], 2)
@@ -125,24 +125,24 @@ def cropped(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
     rgb = np.ascontiguousarray(photo.rgb[y : y + height, x : x + width])
     if camera is not None:
         camera = Intrinsics(rgb.shape[1], rgb.shape[0], camera.fx, camera.fy, camera.cx - x, camera.cy - y)
-    return _reframed(case, rgb, lambda box: (box[0] - x, box[1] - y, box[2] - x, box[3] - y), camera)
+    return _reframe(case, rgb, lambda box: (box[0] - x, box[1] - y, box[2] - x, box[3] - y), camera)
 
 
-def blurred(case: AnnotatedInputs, _: np.random.Generator) -> AnnotatedInputs:
+def blur(case: AnnotatedInputs, _: np.random.Generator) -> AnnotatedInputs:
     """Slightly out of focus."""
     photo = case.inputs.photo
     rgb = cv2.GaussianBlur(photo.rgb, (0, 0), BLUR * max(photo.width, photo.height))
-    return _reframed(case, rgb, lambda box: box, case.inputs.intrinsics)
+    return _reframe(case, rgb, lambda box: box, case.inputs.intrinsics)
 
 
 PERTURBATIONS: Mapping[str, Perturbation] = {
-    "mirrored": mirrored,
-    "jittered": jittered,
-    "dropped": dropped,
-    "exposed": exposed,
-    "rolled": rolled,
-    "cropped": cropped,
-    "blurred": blurred,
+    "mirrored": mirror,
+    "jittered": jitter,
+    "dropped": drop,
+    "exposed": expose,
+    "rolled": roll,
+    "cropped": crop,
+    "blurred": blur,
 }
 
 
@@ -172,7 +172,7 @@ def _with_objects(case: AnnotatedInputs, objects: Sequence[AnnotatedObject]) -> 
     return replace(case, annotation=case.annotation.model_copy(update={"objects": tuple(objects)}))
 
 
-def _reframed(
+def _reframe(
     case: AnnotatedInputs,
     rgb: UInt8[np.ndarray, "h w 3"],
     moved: Callable[[Box], Box],
@@ -181,9 +181,9 @@ def _reframed(
     """Another picture in which boxes lie elsewhere: they are clipped, and what is mostly outside is left out."""
     height, width = rgb.shape[:2]
     before = [moved(annotated.bbox) for annotated in case.annotation.objects]
-    after = [_clipped(box, width, height) for box in before]
+    after = [_clip(box, width, height) for box in before]
     photo = replace(case.inputs.photo, rgb=rgb, original_size=(width, height))
-    boxes = tuple(replace(b, box=_clipped(moved(b.box), width, height)) for b in case.inputs.boxes)
+    boxes = tuple(replace(b, box=_clip(moved(b.box), width, height)) for b in case.inputs.boxes)
     inputs = replace(case.inputs, photo=photo, boxes=boxes, intrinsics=intrinsics)
     objects = [o.model_copy(update={"bbox": box}) for o, box in zip(case.annotation.objects, after, strict=True)]
     case = replace(case, inputs=inputs, annotation=case.annotation.model_copy(update={"size": (width, height)}))
@@ -193,7 +193,7 @@ def _reframed(
     return with_only(_with_objects(case, objects), left)
 
 
-def _clipped(box: Box, width: int, height: int) -> Box:
+def _clip(box: Box, width: int, height: int) -> Box:
     x1, x2 = np.clip([box[0], box[2]], 0.0, width)
     y1, y2 = np.clip([box[1], box[3]], 0.0, height)
     return float(x1), float(y1), float(x2), float(y2)
@@ -210,12 +210,12 @@ def _octagon(box: Box) -> Float[np.ndarray, "8 2"]:
     return np.array([*((a, b) for a in x for b in inner_y), *((a, b) for a in inner_x for b in y)])
 
 
-def _turned(annotated: AnnotatedObject) -> AnnotatedObject:
+def _turn(annotated: AnnotatedObject) -> AnnotatedObject:
     front = None if annotated.front is None else -annotated.front % 360.0
     return annotated.model_copy(update={"front": front})
 
 
-def _recoloured(annotated: AnnotatedObject, gain: Float[np.ndarray, "3"]) -> AnnotatedObject:
+def _recolour(annotated: AnnotatedObject, gain: Float[np.ndarray, "3"]) -> AnnotatedObject:
     if annotated.colour is None:
         return annotated
     channels = (_lit(np.array([value / 255.0]), g)[0] for value, g in zip(annotated.colour, gain, strict=True))

@@ -125,7 +125,7 @@ def perturbed_tables(plain: Results, perturbed: Mapping[str, Results]) -> tuple[
     of_photo = {r.photo: r for r in plain}
     rows, differences = [Row("as they are", _values(plain)[: len(columns)])], []
     for name, results in perturbed.items():
-        pairs = [(_restricted(of_photo[r.photo], r), r) for r in results if r.photo in of_photo]
+        pairs = [(_restrict(of_photo[r.photo], r), r) for r in results if r.photo in of_photo]
         before, after = [a for a, _ in pairs], [b for _, b in pairs]
         rows.append(Row(name, _values(after)[: len(columns)]))
         changes = [_difference(figure.of(after), figure.of(before)) for figure in OF_OBJECTS]
@@ -138,7 +138,7 @@ def perturbed_tables(plain: Results, perturbed: Mapping[str, Results]) -> tuple[
     )
 
 
-def _restricted(plain: PhotoScores, perturbed: PhotoScores) -> PhotoScores:
+def _restrict(plain: PhotoScores, perturbed: PhotoScores) -> PhotoScores:
     """The plain result of the objects, and the attributes of them, that the perturbed one has too."""
     places = {o.index for o in perturbed.objects}
     return replace(plain, objects=tuple(o for o in plain.objects if o.index in places))

@@ -156,14 +156,14 @@ def plan(
         {name: settings[fold_of[name] if len(settings) > 1 else 0] for name in tasks_by_id} if settings else {}
     )
     tasks = [
-        _changed(replace(task, settings=settings_of_photo.get(name, {})), change, cache, tiles)
+        _change(replace(task, settings=settings_of_photo.get(name, {})), change, cache, tiles)
         for change in ("", *perturbations)
         for name, task in tasks_by_id.items()
     ]
     return PhotoPlan(tuple(tasks), tuple(missing), named, fold_of, len(settings) > 1)
 
 
-def _changed(task: PhotoTask, change: str, cache: Path | None, tiles: Path | None) -> PhotoTask:
+def _change(task: PhotoTask, change: str, cache: Path | None, tiles: Path | None) -> PhotoTask:
     """The task under a perturbation, with places of its own for what it writes."""
     title = "-".join(part for part in (task.name, "" if task.named else "unnamed", change) if part)
     return replace(
@@ -194,7 +194,7 @@ def run(
         progress: reports and cancellation.
     """
     of_key = {r.key: r for r in known if not r.failure}
-    done = {task.title: of_key[key] for task in asked.tasks if (key := task.key()) in of_key and _drawn(task)}
+    done = {task.title: of_key[key] for task in asked.tasks if (key := task.key()) in of_key and _has_tile(task)}
     waiting = [task for task in asked.tasks if task.title not in done]
 
     def take(task: PhotoTask, result: PhotoScores) -> None:
@@ -219,7 +219,7 @@ def run(
     return so_far()
 
 
-def _drawn(task: PhotoTask) -> bool:
+def _has_tile(task: PhotoTask) -> bool:
     return task.tile is None or task.tile.is_file()
 
 
@@ -257,7 +257,7 @@ def sheet(bench: PhotosBench) -> UInt8[np.ndarray, "_ _ 3"]:
         InputError: no build has a picture.
     """
     pictures = ((task.title, cv2.imread(str(task.tile))) for task in bench.plan.tasks if task.tile is not None)
-    tiles = [_captioned(picture[..., ::-1], title) for title, picture in pictures if picture is not None]
+    tiles = [_caption(picture[..., ::-1], title) for title, picture in pictures if picture is not None]
     if not tiles:
         raise InputError("no photo was built, so there is nothing to show in a sheet")
     tiles += [np.full_like(tiles[0], 255)] * (-len(tiles) % SHEET_COLUMNS)
@@ -265,7 +265,7 @@ def sheet(bench: PhotosBench) -> UInt8[np.ndarray, "_ _ 3"]:
     return np.concatenate(rows)
 
 
-def _captioned(tile: UInt8[np.ndarray, "h w 3"], words: str) -> UInt8[np.ndarray, "_ w 3"]:
+def _caption(tile: UInt8[np.ndarray, "h w 3"], words: str) -> UInt8[np.ndarray, "_ w 3"]:
     bar = np.full((_CAPTION_PX, tile.shape[1], 3), 255, np.uint8)
     cv2.putText(bar, words, (6, 13), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (20, 20, 20), 1, cv2.LINE_AA)
     return np.concatenate([bar, tile])

@@ -11,7 +11,7 @@ import numpy as np
 
 from diorama_core.artefacts import RankedShapes
 from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import attempted, recipe
+from diorama_core.evaluation.benchmarks.cases import make_views, recipe
 from diorama_core.evaluation.benchmarks.pose_comparison import (
     BASELINES,
     COMPARED_SHAPES,
@@ -39,7 +39,7 @@ from diorama_core.evaluation.benchmarks.pose_tables import (
 )
 from diorama_core.evaluation.benchmarks.retrieval import object_groups
 from diorama_core.evaluation.metrics.pose import object_alignment, pair_checks
-from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, matched
+from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, match_all
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe
@@ -136,8 +136,8 @@ class _Tally:
             ),
             poses,
             tuple((name, tuple(rows)) for name, rows in self.ablation.items()),
-            tuple((name, _counted(rows)) for name, rows in sorted(self.groups.items())),
-            tuple((name, _counted(rows)) for name, rows in sorted(self.groups_after.items())),
+            tuple((name, _counts(rows)) for name, rows in sorted(self.groups.items())),
+            tuple((name, _counts(rows)) for name, rows in sorted(self.groups_after.items())),
         )
 
 
@@ -155,7 +155,7 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
     tally = _Tally()
     solvers = SideBySide.embedded(library)
     cases = recipe(scenes, 1, seed)
-    for number, (case, view) in enumerate(attempted(cases, library, [])):
+    for number, (case, view) in enumerate(make_views(cases, library, [])):
         step = progress.part(number / len(cases), (number + 1) / len(cases))
         _one_room(view, solvers, tally, step, case.name)
     progress.report(1.0, "done")
@@ -166,9 +166,9 @@ def _one_room(view: TruthView, solvers: SideBySide, tally: _Tally, progress: Pro
     library = solvers.library
     depths = tuple(dict.fromkeys(depth for depth, _ in CONDITIONS))
     progress.report(0.0, f"{name}: perception")
-    seen = {d: _tried(predict, inputs_with(view, d), library) for d in depths}
+    seen = {d: _try(predict, inputs_with(view, d), library) for d in depths}
     asked_for = {*tally.retained, *(depth for depth, shapes in CONDITIONS if shapes != GIVEN)}
-    retrieved = {d: _retrieved(solvers, seen[d]) for d in depths if d in asked_for}
+    retrieved = {d: _retrieve(solvers, seen[d]) for d in depths if d in asked_for}
     for turn, (depth, shapes) in enumerate(CONDITIONS):
         progress.report(0.1 + 0.1 * turn, f"{name}: {depth}, {shapes}")
         scenes = _scenes(view, solvers, seen[depth], retrieved.get(depth), shapes)
@@ -183,13 +183,13 @@ def _one_room(view: TruthView, solvers: SideBySide, tally: _Tally, progress: Pro
             progress.report(0.8, f"{name}: {k} shapes kept, {depth}")
             first = _firsts(retrieved[depth], k)
             at_hand = seen[depth]
-            scene = None if at_hand is None or first is None else _tried(solvers.our_scene, at_hand, first)
+            scene = None if at_hand is None or first is None else _try(solvers.our_scene, at_hand, first)
             rows.append(pose_scores(view, scene, library))
 
 
-def _retrieved(solvers: SideBySide, seen: SeenInput | None) -> tuple[RankedShapes, ...] | None:
+def _retrieve(solvers: SideBySide, seen: SeenInput | None) -> tuple[RankedShapes, ...] | None:
     """One more shape of every object than any table keeps."""
-    return None if seen is None else _tried(solvers.retrieved, seen, max(RETRIEVALS) + 1)
+    return None if seen is None else _try(solvers.retrieved, seen, max(RETRIEVALS) + 1)
 
 
 def _firsts(retrieved: tuple[RankedShapes, ...] | None, count: int) -> tuple[RankedShapes, ...] | None:
@@ -206,10 +206,10 @@ def _scenes(
     if seen is None or (retrieved is None and shapes != GIVEN):
         return {}
     chosen = shapes_of(solvers.given(view, seen), retrieved or (), shapes, COMPARED_SHAPES)
-    return _tried(solvers.scenes, seen, chosen) or {}
+    return _try(solvers.scenes, seen, chosen) or {}
 
 
-def _tried(work: Callable[..., Result], *given: object) -> Result | None:
+def _try(work: Callable[..., Result], *given: object) -> Result | None:
     """The result, or None when a stage failed."""
     try:
         return work(*given)
@@ -249,7 +249,7 @@ def _arrange(
     scenes: dict[str, Scene] = {}
     for name, stage, scene in rows:
         progress.report(0.3, f"layout: {name}")
-        arranged = None if scene is None else _tried(stage.optimise, scene, Progress())
+        arranged = None if scene is None else _try(stage.optimise, scene, Progress())
         ablation.setdefault(name, []).append(pose_scores(view, None if arranged is None else arranged[0], library))
         if arranged is not None:
             scenes[name] = arranged[0]
@@ -260,7 +260,7 @@ def with_true_graph(view: TruthView, scene: Scene) -> Scene:
     """The prediction with the true support edges among the objects that were found; planes by role and nearness."""
     scene = align_to_truth(scene, view)
     truth = [view.scene.objects[k] for k in view.asked]
-    names = {t.id: m.id for t, m in zip(truth, matched(truth, scene)) if m is not None}
+    names = {t.id: m.id for t, m in zip(truth, match_all(truth, scene)) if m is not None}
     edges = []
     for edge in true_supports(view):
         if edge.child in names:
@@ -308,7 +308,7 @@ def _count_groups(
     view: TruthView, scene: Scene | None, library: ShapeLibrary, groups: dict[str, list[tuple[float, ...]]]
 ) -> None:
     truth = [view.scene.objects[k] for k in view.asked]
-    match = [None] * len(truth) if scene is None else matched(truth, align_to_truth(scene, view))
+    match = [None] * len(truth) if scene is None else match_all(truth, align_to_truth(scene, view))
     true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
     placed = [None if m is None else as_placed(m) for m in match]
     checks = pair_checks(true, placed)
@@ -325,6 +325,6 @@ def _count_groups(
             groups.setdefault(group, []).append((*shares, accuracy))
 
 
-def _counted(rows: Sequence[tuple[float, ...]]) -> GroupCounts:
+def _counts(rows: Sequence[tuple[float, ...]]) -> GroupCounts:
     r, t, s, every, object_acc = (float(x) for x in np.mean(rows, axis=0))
     return GroupCounts(len(rows), r, t, s, every, object_acc)

@@ -22,7 +22,7 @@ from diorama_core.artefacts import (
     RankedShapes,
 )
 from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, scene_alignment
-from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, matched, relation_accuracy, structure_of
+from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, match_all, relation_accuracy, structure_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
@@ -92,7 +92,7 @@ def pose_scores(view: TruthView, scene: Scene | None, library: ShapeLibrary) -> 
         return PoseScores.failed(len(view.asked))
     scene = align_to_truth(scene, view)
     truth = [view.scene.objects[k] for k in view.asked]
-    match = matched(truth, scene)
+    match = match_all(truth, scene)
     placed = [None if m is None else as_placed(m) for m in match]
     true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
     pairs, every = scene_alignment(true, placed)

@@ -9,7 +9,7 @@ import numpy as np
 
 from diorama_core.evaluation.benchmarks.pose_comparison import PoseScores
 from diorama_core.evaluation.benchmarks.retrieval import GROUPS
-from diorama_core.evaluation.metrics.pose import Alignment, pooled
+from diorama_core.evaluation.metrics.pose import Alignment, pool
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
 
@@ -50,9 +50,9 @@ def comparison_table(
         Row(
             name,
             (
-                *_shares(pooled([s.pairs for s in rooms])),
-                *_shares(pooled([s.every for s in rooms])),
-                *_shares(pooled([s.own for s in rooms])),
+                *_shares(pool([s.pairs for s in rooms])),
+                *_shares(pool([s.every for s in rooms])),
+                *_shares(pool([s.own for s in rooms])),
                 _mean([s.box_overlap_cm for s in rooms if s.box_overlap_cm is not None]),
                 _mean([s.relation for s in rooms]),
             ),
@@ -91,7 +91,7 @@ def retrievals_table(
     """Alignment against the number of retrieved shapes (paper, supplement)."""
     names = [f"{n} {d}" for d in ("true depth", "estimated") for n in ("rAcc", "tAcc", "sAcc", "Acc")]
     rows = [
-        Row(str(k), (*_shares(pooled([s.pairs for s in a])), *_shares(pooled([s.pairs for s in b]))))
+        Row(str(k), (*_shares(pool([s.pairs for s in a])), *_shares(pool([s.pairs for s in b]))))
         for k, a, b in retrievals
     ]
     columns = tuple(Column(n, better="↑") for n in names)

@@ -92,7 +92,7 @@ class RecognitionBench:
             Column("kind right", ".3f", "↑"),
             Column("seconds a photo", ".2f", "↓"),
         )
-        rows = [Row(name, _found_values(tuple(photos.values()))) for name, photos in self.found.items()]
+        rows = [Row(name, _values(tuple(photos.values()))) for name, photos in self.found.items()]
         names = (Column("objects", "d"), Column("first", ".3f", "↑"), Column("among five", ".3f", "↑"))
         named = [
             Row(name, (sum(p.objects for p in ps.values()), *_shares(tuple(ps.values()))))
@@ -227,7 +227,7 @@ def _click(
     return ClickedBoxes(len(boxes), hits, sum(box is None for box in meant), seconds)
 
 
-def _found_values(photos: Sequence[FoundBoxes]) -> tuple[float | int, ...]:
+def _values(photos: Sequence[FoundBoxes]) -> tuple[float | int, ...]:
     objects, boxes = sum(p.objects for p in photos), sum(p.boxes for p in photos)
     right = sum(p.right for p in photos)
     return (

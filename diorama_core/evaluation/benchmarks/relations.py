@@ -22,7 +22,7 @@ from diorama_core.artefacts import (
     Photo,
     SceneGraph,
 )
-from diorama_core.evaluation.benchmarks.cases import LeftOut, attempted, recipe
+from diorama_core.evaluation.benchmarks.cases import LeftOut, make_views, recipe
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
 from diorama_core.library.record import ShapeLibrary
@@ -56,7 +56,7 @@ class RelationCount:
         return self.right / self.total if self.total else 1.0
 
 
-def judged(supports: tuple[Support, ...], names: dict[str, str], truth: Scene) -> RelationCount:
+def judge(supports: tuple[Support, ...], names: dict[str, str], truth: Scene) -> RelationCount:
     """Edges beside the truth's; only objects whose true supporter is itself visible, or a part of the room, count.
 
     Args:
@@ -98,7 +98,7 @@ def relations_of(view: TruthView, *, with_depth: bool, graph: GraphStage | None 
     geometry = stage.measure(inputs, estimate, objects, quiet)
     supports = geometry.supports if graph is None else graph.relate(inputs, objects, geometry, quiet).supports
     by_mask = {o.mask_id: o.id for o in view.scene.objects if o.mask_id is not None}
-    return judged(supports, {o.id: by_mask[o.mask_id] for o in objects}, view.scene)
+    return judge(supports, {o.id: by_mask[o.mask_id] for o in objects}, view.scene)
 
 
 def _without_depth(inputs: Inputs) -> Inputs:
@@ -204,12 +204,12 @@ def run(
     asked: list[AskedSupport] = []
     cases = recipe(scenes, 1, seed)
     left_out: list[LeftOut] = []
-    for k, (case, view) in enumerate(attempted(cases, library, left_out)):
+    for k, (case, view) in enumerate(make_views(cases, library, left_out)):
         progress.report(k / len(cases), case.name)
         counts[WITH_DEPTH] += relations_of(view, with_depth=True)
         counts[PHOTO_ALONE] += relations_of(view, with_depth=False)
         if settings is not None:
-            asked.append(_recognised(view.inputs.photo, settings))
+            asked.append(_recognise(view.inputs.photo, settings))
             metered = MeteredGraph(LanguageGraph(settings), asked)
             result = relations_of(view, with_depth=True, graph=metered)
             counts[BY_MODEL] = counts.get(BY_MODEL, RelationCount()) + result
@@ -238,7 +238,7 @@ def costs_table(model: str, asked: Sequence[AskedSupport]) -> Table:
     return Table("Language model: times and costs", columns, rows, note)
 
 
-def _recognised(photo: Photo, settings: LmmSettings) -> AskedSupport:
+def _recognise(photo: Photo, settings: LmmSettings) -> AskedSupport:
     began = time.perf_counter()
     usage = LanguageRecognition(settings).ask(photo, Progress()).usage
     seconds = time.perf_counter() - began

@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from diorama_core.errors import DioramaError
-from diorama_core.evaluation.benchmarks.cases import attempted, recipe
+from diorama_core.evaluation.benchmarks.cases import make_views, recipe
 from diorama_core.evaluation.metrics.shape import is_household, shape_distance
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
@@ -108,12 +108,12 @@ def run(
     everything, others = HierarchicalRetrieval(library), HierarchicalRetrieval(unoffered)
     rows = {name: (partial(_alone, name, library), partial(_alone, name, unoffered)) for name in ALONE}
     for name, stage in published_stages(embeddings or {}).items():
-        rows[name] = (partial(_ranked, stage(library)), partial(_ranked, stage(unoffered)))
+        rows[name] = (partial(_ranks, stage(library)), partial(_ranks, stage(unoffered)))
     results: list[RetrievalResult] = []
     cases = recipe(scenes, 1, seed)
-    for k, (case, view) in enumerate(attempted(cases, tested, [])):
+    for k, (case, view) in enumerate(make_views(cases, tested, [])):
         progress.report(k / len(cases), case.name)
-        same, unseen = _ranked(everything, view), _ranked(others, view)
+        same, unseen = _ranks(everything, view), _ranks(others, view)
         alone = [(name, whole(view), others_only(view)) for name, (whole, others_only) in rows.items()]
         for index in view.asked:
             result = _result(case.name, view, index, same, unseen, library)
@@ -141,7 +141,7 @@ def published_stages(embeddings: Mapping[str, JointEmbedding]) -> dict[str, Call
     }
 
 
-def _ranked(stage: RetrievalStage, view: TruthView) -> dict[str, tuple[str, ...]]:
+def _ranks(stage: RetrievalStage, view: TruthView) -> dict[str, tuple[str, ...]]:
     try:
         ranked = stage.retrieve(view.inputs, true_objects(view), true_geometry(view), Progress())
     except DioramaError as error:
@@ -154,7 +154,7 @@ def _alone(name: str, library: ShapeLibrary, view: TruthView) -> dict[str, tuple
     """Ranked shapes of every object by its label's words, or by what its kind's shapes look like."""
     if name == "words alone":
         return {o.id: tuple(s.id for s in find(library, o.label, k=CACHE_SIZE).shapes) for o in true_objects(view)}
-    return _ranked(MatchedByLooks(library), view)
+    return _ranks(MatchedByLooks(library), view)
 
 
 def _nearest(view: TruthView, index: int, ranked: Sequence[str], library: ShapeLibrary) -> float:

@@ -130,7 +130,7 @@ class Reviewed:
         return next((c.value for c in question.choices if c.value in planes), next(iter(planes), None))
 
 
-def built(task: PhotoTask, library: ShapeLibrary, progress: Progress = SILENT) -> Reviewed:
+def build(task: PhotoTask, library: ShapeLibrary, progress: Progress = SILENT) -> Reviewed:
     """The scene of an annotated photo, with the truth of its objects.
 
     Raises:
@@ -152,7 +152,7 @@ def run(tasks: Sequence[PhotoTask], library: ShapeLibrary, progress: Progress = 
     """
     scenes = []
     for k, task in enumerate(tasks):
-        scenes.append(built(task, library, progress.part(k / len(tasks), (k + 1) / len(tasks))))
+        scenes.append(build(task, library, progress.part(k / len(tasks), (k + 1) / len(tasks))))
     return ReviewBench(tuple(scenes))
 
 

@@ -9,12 +9,12 @@ import numpy as np
 
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import EditRefused
-from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, made, recipe
+from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, attempt, recipe
 from diorama_core.evaluation.benchmarks.review import RIGHT_DEG, answers_table
-from diorama_core.evaluation.benchmarks.system import unnamed
-from diorama_core.evaluation.benchmarks.views import photographed
+from diorama_core.evaluation.benchmarks.system import without_names
+from diorama_core.evaluation.benchmarks.views import photograph
 from diorama_core.evaluation.metrics.pose import object_alignment, rotation_angle, symmetry_turns
-from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, matched
+from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, match_all
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.pipeline.run import build_scene
@@ -72,7 +72,7 @@ class KnownRoom:
         """How many of the objects that the photo shows are where, as large and turned as in the room."""
         items = [self.view.scene.objects[k] for k in self.view.asked]
         true = [as_placed(t, self.all_shapes.shape(t.shape_id).symmetry) for t in items]
-        placed = [None if m is None else as_placed(m) for m in matched(items, align_to_truth(scene, self.view))]
+        placed = [None if m is None else as_placed(m) for m in match_all(items, align_to_truth(scene, self.view))]
         alignment = object_alignment(true, placed)
         return alignment.acc * alignment.count, alignment.count
 
@@ -133,14 +133,14 @@ def run(
 
     def view_of(case: Case) -> TruthView:
         progress.report(cases.index(case) / len(cases), f"reviewing {case.name}")
-        return photographed(case, tested, PHOTOS)[0].truth
+        return photograph(case, tested, PHOTOS)[0].truth
 
     rooms = []
-    for _, view in made(cases, view_of, left_out):
-        given: Inputs = photo_only(view) if named else unnamed(view)
+    for _, view in attempt(cases, view_of, left_out):
+        given: Inputs = photo_only(view) if named else without_names(view)
         scene = build_scene(given, searched, stages=embedded_stages(given, searched)).scene
         items = [view.scene.objects[k] for k in view.asked]
-        pairs = zip(items, matched(items, align_to_truth(scene, view)), strict=True)
+        pairs = zip(items, match_all(items, align_to_truth(scene, view)), strict=True)
         truth = {match.id: true for true, match in pairs if match is not None}
         rooms.append(KnownRoom(scene, view, truth, searched, library))
     progress.report(1.0, "done")

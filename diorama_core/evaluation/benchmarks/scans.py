@@ -15,11 +15,11 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, furnished, made, recipe
+from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, attempt, furnish, recipe
 from diorama_core.evaluation.reports.tables import Column, Row, Table, bootstrap_interval
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.importing.measured_cloud import measured_cloud
-from diorama_core.importing.measured_room import opened_room
+from diorama_core.importing.measured_cloud import measure_cloud
+from diorama_core.importing.measured_room import open_room
 from diorama_core.importing.measured_types import MeasuredRoom
 from diorama_core.importing.point_files import read_points
 from diorama_core.importing.scanned_kinds import with_scanned_kinds
@@ -119,18 +119,18 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
 
     def results_of(case: Case) -> tuple[ScanResult, ...]:
         progress.report(cases.index(case) / len(cases), f"scanning {case.name}")
-        truth = furnished(case, tested)
+        truth = furnish(case, tested)
         with tempfile.TemporaryDirectory() as folder:
             write_scan(Path(folder), scanned(truth, tested, case.seed))
-            return opened_in_all_ways(case.name, truth, Path(folder), searched)
+            return open_all_ways(case.name, truth, Path(folder), searched)
 
-    for _, result in made(cases, results_of, left_out):
+    for _, result in attempt(cases, results_of, left_out):
         results += result
     progress.report(1.0, "done")
     return ScansBench(tuple(results), tuple(left_out))
 
 
-def opened_in_all_ways(name: str, truth: Scene, scan: Path, library: ShapeLibrary) -> tuple[ScanResult, ...]:
+def open_all_ways(name: str, truth: Scene, scan: Path, library: ShapeLibrary) -> tuple[ScanResult, ...]:
     """A scan opened with and without what its points' shapes and its photos tell, and compared with the room.
 
     Args:
@@ -140,24 +140,24 @@ def opened_in_all_ways(name: str, truth: Scene, scan: Path, library: ShapeLibrar
         library: where shapes come from.
     """
     begun = time.process_time()
-    measured = measured_cloud(read_points(scan))
+    measured = measure_cloud(read_points(scan))
     reading = time.process_time() - begun
     results = []
     for way in WAYS:
         begun = time.process_time()
-        scene = opened_room(_known(measured, way, library), library).scene
+        scene = open_room(_with_kinds(measured, way, library), library).scene
         seconds = reading + time.process_time() - begun
-        results.append(scored(name, way, truth, scene, seconds))
+        results.append(score(name, way, truth, scene, seconds))
     return tuple(results)
 
 
-def _known(measured: MeasuredRoom, way: str, library: ShapeLibrary) -> MeasuredRoom:
+def _with_kinds(measured: MeasuredRoom, way: str, library: ShapeLibrary) -> MeasuredRoom:
     if way == WAYS[0]:
         return measured
     return with_scanned_kinds(measured, library, look=way == WAYS[2])
 
 
-def scored(name: str, way: str, truth: Scene, scene: Scene, seconds: float) -> ScanResult:
+def score(name: str, way: str, truth: Scene, scene: Scene, seconds: float) -> ScanResult:
     """An opened scan against the room that was scanned, whichever way round it lies.
 
     Args:
@@ -167,8 +167,8 @@ def scored(name: str, way: str, truth: Scene, scene: Scene, seconds: float) -> S
         scene: as it was opened.
         seconds: that it took.
     """
-    turned = [[_moved(o, yaw_rotation(k * np.pi / 2)) for o in scene.objects] for k in range(4)]
-    asked = [o for o in truth.objects if _asked(o)]
+    turned = [[_rotate(o, yaw_rotation(k * np.pi / 2)) for o in scene.objects] for k in range(4)]
+    asked = [o for o in truth.objects if _is_asked(o)]
     pairs = max((_pairs(asked, objects) for objects in turned), key=len)
     best = max(turned, key=lambda objects: len(_pairs(asked, objects)))
     right = sum(broad(a.category) == broad(b.category) for a, b in pairs)
@@ -179,19 +179,19 @@ def scored(name: str, way: str, truth: Scene, scene: Scene, seconds: float) -> S
     return ScanResult(name, way, len(asked), len(pairs), right, len(openings), met, false, seconds)
 
 
-def _asked(item: SceneObject) -> bool:
+def _is_asked(item: SceneObject) -> bool:
     large = float(np.sort(item.size_m)[1]) >= MIN_SIZE_M
     return large and category(item.category).mount in ("floor", "wall") and item.category not in NOT_ASKED
 
 
-def _moved(item: SceneObject, R: Float[np.ndarray, "3 3"]) -> SceneObject:
+def _rotate(item: SceneObject, R: Float[np.ndarray, "3 3"]) -> SceneObject:
     pose = replace(item.pose, R_world_object=R @ item.pose.R_world_object, position=R @ item.pose.position)
     return replace(item, pose=pose)
 
 
 def _pairs(truths: Sequence[SceneObject], objects: Sequence[SceneObject]) -> list[tuple[SceneObject, SceneObject]]:
     """Things with what was found in their place, each once, the best first."""
-    rows = [(_shared(a, b), i, j) for i, a in enumerate(truths) for j, b in enumerate(objects)]
+    rows = [(_iou(a, b), i, j) for i, a in enumerate(truths) for j, b in enumerate(objects)]
     pairs, used_things, used_found = [], set[int](), set[int]()
     for share, i, j in sorted(rows, key=lambda row: (-row[0], row[1:])):
         if share >= MIN_SHARED and i not in used_things and j not in used_found:
@@ -201,7 +201,7 @@ def _pairs(truths: Sequence[SceneObject], objects: Sequence[SceneObject]) -> lis
     return pairs
 
 
-def _shared(a: SceneObject, b: SceneObject) -> float:
+def _iou(a: SceneObject, b: SceneObject) -> float:
     """Intersection over union of the boxes along the room's axes."""
     (low_a, high_a), (low_b, high_b) = ((c.min(axis=0), c.max(axis=0)) for c in (a.corners_world, b.corners_world))
     common = float(np.prod(np.maximum(np.minimum(high_a, high_b) - np.maximum(low_a, low_b), 0.0)))

@@ -74,7 +74,7 @@ def with_true_masks(inputs: Inputs, view: TruthView) -> Inputs:
     return replace(inputs, instances=view.inputs.instances, instance_boxes=view.inputs.instance_boxes)
 
 
-def substituted(stages: Stages, view: TruthView, given: frozenset[str], library: ShapeLibrary) -> Stages:
+def substitute(stages: Stages, view: TruthView, given: frozenset[str], library: ShapeLibrary) -> Stages:
     """Stages whose results carry the truth where `given` says so ("masks" belongs to the inputs).
 
     Args:
@@ -130,7 +130,7 @@ class _TrueRoom:
             inputs, objects, geometry, progress: as documented in `protocols.ArchitectureStage`.
         """
         Q = heading_change(geometry, self.view)
-        planes = tuple(_turned(p, Q) for p in self.view.scene.architecture.planes)
+        planes = tuple(_rotate(p, Q) for p in self.view.scene.architecture.planes)
         room = replace(self.view.scene.architecture, planes=planes)
         return ArchitectureEstimate(room, resolve_supports(geometry, room), 1.0, RoomSource(RoomMethod.GIVEN))
 
@@ -191,10 +191,10 @@ def geometry_with(
     if "supports" in given:
         geometry = replace(geometry, supports=_with_true_supports(geometry.supports, truth, view))
     if "height" in given:
-        geometry = scaled(geometry, float(view.camera.position[2] / geometry.camera.position[2]))
+        geometry = enlarge(geometry, float(view.camera.position[2] / geometry.camera.position[2]))
     if "scale" in given:
         factors = [_farther(c, geometry, truth[c.object_id], view) for c in geometry.cuboids if c.object_id in truth]
-        geometry = scaled(geometry, float(np.median(factors)) if factors else 1.0)
+        geometry = enlarge(geometry, float(np.median(factors)) if factors else 1.0)
     Q = heading_change(geometry, view)
     cuboids = tuple(
         _with_true(c, geometry, truth[c.object_id], view, given, Q) if c.object_id in truth else c
@@ -203,7 +203,7 @@ def geometry_with(
     return replace(geometry, cuboids=cuboids)
 
 
-def scaled(geometry: ObjectGeometry, factor: float) -> ObjectGeometry:
+def enlarge(geometry: ObjectGeometry, factor: float) -> ObjectGeometry:
     """The estimate made larger about the point on the floor below its camera: the picture stays the same."""
     T = geometry.camera.T_world_camera.copy()
     T[2, 3] *= factor
@@ -274,5 +274,5 @@ def _with_true_supports(
     return tuple(true.get(edge.child, edge) for edge in edges)
 
 
-def _turned(plane: Plane, Q: Float[np.ndarray, "3 3"]) -> Plane:
+def _rotate(plane: Plane, Q: Float[np.ndarray, "3 3"]) -> Plane:
     return replace(plane, polygon=plane.polygon @ Q.T)

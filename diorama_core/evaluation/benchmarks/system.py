@@ -14,8 +14,8 @@ import numpy as np
 
 from diorama_core.artefacts import Box, Inputs, LabelledBox
 from diorama_core.errors import Cancelled, InputError
-from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, attempted, recipe
-from diorama_core.evaluation.benchmarks.substitution import substituted, with_true_masks
+from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, make_views, recipe
+from diorama_core.evaluation.benchmarks.substitution import substitute, with_true_masks
 from diorama_core.evaluation.benchmarks.system_tables import (
     CaseResult,
     scene_table,
@@ -69,7 +69,7 @@ def masks_only(view: TruthView) -> Inputs:
     return replace(view.inputs, depth_m=None, intrinsics=None)
 
 
-def unnamed(view: TruthView) -> Inputs:
+def without_names(view: TruthView) -> Inputs:
     """The photo with boxes without category names."""
     given = photo_only(view)
     return replace(given, boxes=tuple(replace(b, category=UNKNOWN.name, label=UNKNOWN.name) for b in given.boxes))
@@ -78,24 +78,24 @@ def unnamed(view: TruthView) -> Inputs:
 def loosely_said(view: TruthView) -> Inputs:
     """The photo with boxes called as people call them in passing: "table" of desks, "cabinet" of chests of drawers."""
     given = photo_only(view)
-    return replace(given, boxes=tuple(called_loosely(b) for b in given.boxes))
+    return replace(given, boxes=tuple(loosen_name(b) for b in given.boxes))
 
 
-def called_loosely(box: LabelledBox) -> LabelledBox:
+def loosen_name(box: LabelledBox) -> LabelledBox:
     """A box with the first of `PLAIN_WORDS` that is used often enough for its kind; as it was where none is."""
     shares = ((word, MEANINGS[word].get(box.category, 0.0) / sum(MEANINGS[word].values())) for word in PLAIN_WORDS)
     word = next((word for word, share in shares if share >= _SAID_OFTEN), None)
     return box if word is None else replace(box, category=resolve(word).category.name, label=word)
 
 
-def jittered(view: TruthView) -> Inputs:
+def jitter(view: TruthView) -> Inputs:
     """The picture with every edge of every box off by 4 % of the box (standard deviation), as detectors' are."""
     given = photo_only(view)
     rng = np.random.default_rng(len(view.asked))
-    return replace(given, boxes=tuple(replace(b, box=_jittered(b.box, view, rng)) for b in given.boxes))
+    return replace(given, boxes=tuple(replace(b, box=_jitter(b.box, view, rng)) for b in given.boxes))
 
 
-def _jittered(box: Box, view: TruthView, rng: np.random.Generator) -> Box:
+def _jitter(box: Box, view: TruthView, rng: np.random.Generator) -> Box:
     k = view.camera.intrinsics
     extent = np.tile([box[2] - box[0], box[3] - box[1]], 2)
     x1, y1, x2, y2 = np.array(box) + BOX_JITTER * extent * rng.standard_normal(4)
@@ -112,9 +112,9 @@ WAYS: Mapping[str, Way] = {
     "depth": Way(TRUE_INPUTS, lambda view: view.inputs),
     "masks": Way("true masks, the photo's own depth", masks_only),
     "photo": Way(PHOTO_ALONE, photo_only),
-    "unnamed": Way(f"{PHOTO_ALONE}, without classes", unnamed),
+    "unnamed": Way(f"{PHOTO_ALONE}, without classes", without_names),
     "loose": Way(f"{PHOTO_ALONE}, loose words", loosely_said),
-    "jittered": Way(f"{PHOTO_ALONE}, boxes off by 4 %", jittered),
+    "jittered": Way(f"{PHOTO_ALONE}, boxes off by 4 %", jitter),
     "acdc": Way(f"ACDC, {TRUE_INPUTS}", lambda view: view.inputs, stages=_acdc),
     "published": Way("the paper's system, true masks, networks", masks_only, stages=published_stages),
     "published-acdc": Way("ACDC, true masks, networks", masks_only, stages=published_acdc_stages),
@@ -147,7 +147,7 @@ class SystemBench:
     results: tuple[tuple[str, tuple[CaseResult, ...]], ...]
     """(what was given, one result per case)."""
     left_out: tuple[LeftOut, ...] = ()
-    substituted: tuple[str, ...] = ()
+    substitute: tuple[str, ...] = ()
     """The ways in which the truth took the place of something."""
 
     def tables(self) -> tuple[Table, ...]:
@@ -215,7 +215,7 @@ def run(
         return SystemBench(tuple(seeds), offered, rows, tuple(left_out), tuple(w.name for w in ways if w.truth))
 
     for k, (seed, case) in enumerate(cases):
-        for _, view in attempted((case,), tested, left_out):
+        for _, view in make_views((case,), tested, left_out):
             shown: list[Built | None] = []
             for turn, way in enumerate(ways):
                 progress.report((k + turn / len(ways)) / len(cases), f"{case.name}: {way.name}")
@@ -263,7 +263,7 @@ def build_case(
             everything = embedded_stages(inputs, library)
             stages = replace(stages, pose=everything.pose, layout=everything.layout, refinement=everything.refinement)
         known = library if "shape" in way.truth else searched
-        stages = substituted(stages, view, way.truth, known)
+        stages = substitute(stages, view, way.truth, known)
         built = build_scene(inputs, known, stages=stages, progress=Progress(token=progress.token))
         spent, waited = time.process_time() - begun, time.perf_counter() - wall
         before = scene_scores(view, built.observed, library)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diorama_core.evaluation.metrics.pose import Alignment, pooled
+from diorama_core.evaluation.metrics.pose import Alignment, pool
 from diorama_core.evaluation.metrics.scene import SceneScores
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Column, Interval, Row, Table, Value, bootstrap_interval, paper_rows
@@ -58,7 +58,7 @@ def system_table(results: Results, *, offered: bool = False) -> Table:
         )
         for reading, key in _ALIGNED:
             alignments: list[Alignment] = [getattr(c.scores, key) for c in cases]
-            p = pooled(alignments)
+            p = pool(alignments)
             span = bootstrap_interval([a.acc for a in alignments], [a.count for a in alignments])
             rows.append(
                 Row(
@@ -125,7 +125,7 @@ def _scene_row(name: str, scores: Sequence[SceneScores]) -> Row:
     }
     return Row(
         name,
-        (pooled(alignments).acc, _median_off(scores), *(_mean([getattr(s, key) for s in scores]) for _, key in _SCENE)),
+        (pool(alignments).acc, _median_off(scores), *(_mean([getattr(s, key) for s in scores]) for _, key in _SCENE)),
         intervals=(
             bootstrap_interval([a.acc for a in alignments], [a.count for a in alignments]),
             None,
@@ -149,7 +149,7 @@ def substitution_table(results: Results) -> Table:
             Row(
                 name,
                 (
-                    *(pooled(o).acc for o in alignments),
+                    *(pool(o).acc for o in alignments),
                     *(_mean([getattr(s, key) for s in part]) for key in ("chamfer_cm", "image_iou") for part in scores),
                 ),
                 intervals=(
@@ -171,7 +171,7 @@ def series_table(results: Results) -> Table:
         values: list[Value] = []
         for seed in seeds:
             part = [c.scores for c in cases if c.seed == seed]
-            values += [pooled([s.own for s in part]).acc if part else None, _mean([s.chamfer_cm for s in part])]
+            values += [pool([s.own for s in part]).acc if part else None, _mean([s.chamfer_cm for s in part])]
         rows.append(Row(name, tuple(values)))
     return Table("By series of rooms", columns, tuple(rows))
 

@@ -18,8 +18,8 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.picture import picture
 from diorama_core.scene.types import Scene
-from diorama_core.text.compose import composed_room
-from diorama_core.text.scene_from_text import finished
+from diorama_core.text.compose import compose_room
+from diorama_core.text.scene_from_text import finish
 
 SERIES = ("development", "reporting")
 PICTURE_PX = (480, 360)
@@ -107,7 +107,7 @@ def run(
     for k, (name, asked) in enumerate(wanted):
         progress.report(k / len(wanted), f"Composing: {asked.prompt[:50]}")
         begun = time.perf_counter()
-        scene, notes = _composed(asked.prompt, library, seed)
+        scene, notes = _compose(asked.prompt, library, seed)
         seconds = time.perf_counter() - begun
         measured.append(Measured(name, asked.prompt, measure(asked, scene, library), tuple(notes), seconds))
         if pictures:
@@ -115,14 +115,14 @@ def run(
     return TextBench(seed, tuple(measured)), sheet(tiles) if pictures else None
 
 
-def _composed(prompt: str, library: ShapeLibrary, seed: int) -> tuple[Scene, Sequence[str]]:
-    made = composed_room(prompt, library, seed)
+def _compose(prompt: str, library: ShapeLibrary, seed: int) -> tuple[Scene, Sequence[str]]:
+    made = compose_room(prompt, library, seed)
     return made.scene, made.notes
 
 
 def tile(scene: Scene, library: ShapeLibrary, caption: str) -> UInt8[np.ndarray, "h w 3"]:
     """A room seen by its camera and from above, with its prompt."""
-    shown, textures = finished(scene, library)
+    shown, textures = finish(scene, library)
     views = [
         picture(shown, library, view=view, size=(width, PICTURE_PX[1]), textures=textures)
         for view, width in (("photo", PICTURE_PX[0]), ("top", PICTURE_PX[1]))

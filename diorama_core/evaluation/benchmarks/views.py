@@ -18,9 +18,9 @@ import numpy as np
 
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import MIN_ASKED, SIZE, Case, LeftOut, furnished, made, recipe
-from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, pooled
-from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, matched
+from diorama_core.evaluation.benchmarks.cases import MIN_ASKED, SIZE, Case, LeftOut, attempt, furnish, recipe
+from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, pool
+from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, match_all
 from diorama_core.evaluation.reports.tables import Column, Row, Table, bootstrap_interval
 from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.library.record import ShapeLibrary
@@ -79,7 +79,7 @@ class ViewsBench:
         rows = []
         for way in dict.fromkeys(r.way for r in self.results):
             results = [r for r in self.results if r.way == way]
-            p = pooled([r.own for r in results])
+            p = pool([r.own for r in results])
             span = bootstrap_interval([r.own.acc for r in results], [r.own.count for r in results])
             seconds = sum(r.seconds for r in results) / len(results)
             plans, heights = [r.room for r in results], [abs(r.height - 1.0) for r in results]
@@ -143,9 +143,9 @@ def run(
 
     def photos_of(case: Case) -> tuple[RoomView, ...]:
         progress.report(cases.index(case) / len(cases), f"photographing {case.name}")
-        return photographed(case, tested, max(counts))
+        return photograph(case, tested, max(counts))
 
-    for case, views in made(cases, photos_of, left_out):
+    for case, views in attempt(cases, photos_of, left_out):
         k = cases.index(case)
         part = progress.part(k / len(cases), (k + 1) / len(cases))
         room = _Room(case, library, tested, searched, progress)
@@ -167,7 +167,7 @@ class RoomView:
     camera: Camera
 
 
-def photographed(case: Case, library: ShapeLibrary, count: int, size: tuple[int, int] = SIZE) -> tuple[RoomView, ...]:
+def photograph(case: Case, library: ShapeLibrary, count: int, size: tuple[int, int] = SIZE) -> tuple[RoomView, ...]:
     """Pictures of a case's room from different places: first one with enough objects, then those that share most of
     its objects.
 
@@ -180,7 +180,7 @@ def photographed(case: Case, library: ShapeLibrary, count: int, size: tuple[int,
     Raises:
         SceneError: there is no room for so many cameras.
     """
-    scene = furnished(case, library)
+    scene = furnish(case, library)
     studio = Studio(scene, library)
     cameras = sample_cameras(scene, library, case.seed, count, size)
     views = [RoomView(studio.view(c, size, with_empty_room=False), c) for c in cameras]
@@ -220,7 +220,7 @@ class _Room:
 
     def from_sphere(self, views: Sequence[RoomView]) -> Scene:
         """The scene of a 360 degree photo and its boxes, seen by the first photo's camera, with the boxes there."""
-        room, first = furnished(self.case, self.tested), views[0]
+        room, first = furnish(self.case, self.tested), views[0]
         seen = sphere_photo(Studio(room, self.tested), sphere_place(room, self.case.seed))
         marked = seen.marked(room.objects)
         photo = Photo(seen.rgb, "sphere.png", (seen.rgb.shape[1], seen.rgb.shape[0]))
@@ -261,7 +261,7 @@ class _Room:
             return ViewsResult(self.case.name, way, failed, time.process_time() - begun, reason)
         seconds = time.process_time() - begun
         true = [as_placed(t, self.library.shape(t.shape_id).symmetry) for t in items]
-        placed = [None if m is None else as_placed(m) for m in matched(items, scene)]
+        placed = [None if m is None else as_placed(m) for m in match_all(items, scene)]
         alignment = object_alignment(true, placed)
         return ViewsResult(self.case.name, way, alignment, seconds, "", *_room_agreement(scene, truth.scene))
 

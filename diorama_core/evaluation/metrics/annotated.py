@@ -91,7 +91,7 @@ def not_built(photo: str, index: int, annotated: AnnotatedObject, opening: bool 
     )
 
 
-def measured(
+def measure(
     photo: str,
     index: int,
     annotated: AnnotatedObject,

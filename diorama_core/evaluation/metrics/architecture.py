@@ -101,7 +101,7 @@ def architecture_scores(
         depth_rmse_m=depth_rmse(a.depth_m, b.depth_m),
         cdb_m=centred_chamfer(plane_points(aligned), plane_points(true)),
         cdb_seen_m=centred_chamfer(
-            _moved(seen_points(estimated, found_camera or camera), found_camera or camera, camera),
+            _move(seen_points(estimated, found_camera or camera), found_camera or camera, camera),
             seen_points(true, camera),
         ),
         recall=planes.recall,
@@ -209,7 +209,7 @@ def seen_points(planes: tuple[Plane, ...], camera: Camera) -> Float[np.ndarray, 
     return points[first >= 1.0 - SAME_DEPTH]
 
 
-def _moved(points: Float[np.ndarray, "n 3"], from_camera: Camera, to_camera: Camera) -> Float[np.ndarray, "n 3"]:
+def _move(points: Float[np.ndarray, "n 3"], from_camera: Camera, to_camera: Camera) -> Float[np.ndarray, "n 3"]:
     """Points that lie to the second camera as they did to the first."""
     T = to_camera.T_world_camera @ from_camera.T_camera_world
     return points @ T[:3, :3].T + T[:3, 3]
@@ -307,5 +307,5 @@ def _visible(planes: tuple[Plane, ...], camera: Camera) -> list[tuple[Plane, Flo
 
 def _align_plane(plane: Plane, from_camera: Camera, to_camera: Camera) -> Plane:
     """A plane moved so that it lies to the second camera as it did to the first."""
-    polygon = _moved(plane.polygon, from_camera, to_camera)
+    polygon = _move(plane.polygon, from_camera, to_camera)
     return Plane(plane.id, plane.role, polygon, plane.thickness, confidence=plane.confidence)

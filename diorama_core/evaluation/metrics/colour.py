@@ -124,7 +124,7 @@ def visible_colours(
     if scene.camera is None or not scene.objects:
         return {}
     world = scene_world(scene, library, textures=textures)
-    view = PinholeView(_reduced(scene.camera))
+    view = PinholeView(_reduce(scene.camera))
     rays = view.rays(pixel_centres(view.width, view.height)).reshape(-1, 6)
     hits = world.caster.first_hits(rays)
     rays, hits = rays[hits.found], hits.chosen(hits.found)
@@ -149,7 +149,7 @@ def _with_gloss(base: Float[np.ndarray, "n 3"], places: Places, rays: Float[np.n
     return np.minimum(base * (1 - metallic) + gloss, 1.0).astype(np.float64)
 
 
-def _reduced(camera: Camera) -> Camera:
+def _reduce(camera: Camera) -> Camera:
     k = camera.intrinsics
     scale = min(1.0, _SIDE_PX / max(k.width, k.height))
     return Camera(k.scaled(max(1, round(k.width * scale)), max(1, round(k.height * scale))), camera.T_world_camera)

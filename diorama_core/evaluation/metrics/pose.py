@@ -128,7 +128,7 @@ def object_alignment(truth: Sequence[Placed], predicted: Sequence[Placed | None]
     return Alignment("object-focus", len(truth), *shares)
 
 
-def pooled(alignments: Sequence[Alignment]) -> Alignment:
+def pool(alignments: Sequence[Alignment]) -> Alignment:
     """The mean over scenes, each counting by its objects."""
     weights = np.array([a.count for a in alignments], dtype=float)
     if weights.sum() == 0:

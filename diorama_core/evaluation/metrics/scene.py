@@ -123,7 +123,7 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
         return SceneScores.failed(len(truth))
     height_off = _height_off(scene, view)
     scene = align_to_truth(scene, view)
-    match = matched(truth, scene)
+    match = match_all(truth, scene)
     placed = [None if m is None else as_placed(m) for m in match]
     true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
     pairs, every = scene_alignment(true, placed)
@@ -183,7 +183,7 @@ def align_to_truth(scene: Scene, view: TruthView) -> Scene:
     return moved(scene, view.camera.T_world_camera @ scene.camera.T_camera_world)
 
 
-def matched(truth: list[SceneObject], scene: Scene) -> list[SceneObject | None]:
+def match_all(truth: list[SceneObject], scene: Scene) -> list[SceneObject | None]:
     """For every true object the predicted one with the same box in the photo; each is used once."""
     left = {o.id: o for o in scene.objects if o.box_px is not None}
     matches: list[SceneObject | None] = []

@@ -78,7 +78,7 @@ def measure(asked: Asked, scene: Scene, library: ShapeLibrary) -> TextScene:
     failures: list[str] = []
     counted = 0
     for name, number in asked.counts.items():
-        present = len(_named(scene, name))
+        present = len(_members(scene, name))
         counted += present == number
         if present != number:
             failures.append(f"{present} of {number} {name}")
@@ -105,7 +105,7 @@ def measure(asked: Asked, scene: Scene, library: ShapeLibrary) -> TextScene:
     )
 
 
-def _named(scene: Scene, name: str) -> list[SceneObject]:
+def _members(scene: Scene, name: str) -> list[SceneObject]:
     """Objects of a category; special kinds of it count where there is none of itself."""
     of_category = [o for o in scene.objects if o.category == name]
     return of_category or [o for o in scene.objects if o.category in with_kin(name)]
@@ -116,7 +116,7 @@ def _looks(asked: Asked, scene: Scene, library: ShapeLibrary, failures: list[str
     for name, words in asked.looks.items():
         for word in words:
             total += 1
-            named = _named(scene, name)
+            named = _members(scene, name)
             look = look_of(word)
             good = bool(named) and all(
                 has_look(record_of(library, o.shape_id), word) or (look is not None and o.colour == look.colour)
@@ -135,7 +135,7 @@ def _relations(
     between, to_room = [0, 0], [0, 0]
     for name, kind, targets in asked.relations:
         number = asked.counts.get(name, 1)
-        met = sum(_holds(scene, o, kind, targets, frame) for o in _named(scene, name))
+        met = sum(_holds(scene, o, kind, targets, frame) for o in _members(scene, name))
         good = met >= number
         tally = to_room if kind in OF_ROOM or set(targets) <= set(OPENING_CATEGORIES) else between
         tally[0] += good
@@ -143,7 +143,7 @@ def _relations(
         if not good:
             failures.append(f"{name} {kind} {' and '.join(targets)}: {met} of {number}")
     for name, (rows, each) in asked.rows.items():
-        good = are_in_rows(_named(scene, name), rows, each)
+        good = are_in_rows(_members(scene, name), rows, each)
         between[0] += good
         between[1] += 1
         if not good:
@@ -172,7 +172,7 @@ def are_in_rows(items: Sequence[SceneObject], rows: int, each: int) -> bool:
 def _holds(scene: Scene, item: SceneObject, kind: RelationKind, targets: Sequence[str], frame: RoomFrame) -> bool:
     if kind in OF_ROOM:
         return is_met(scene, item.id, Relation(kind), frame)
-    options = [[o.id for o in _named(scene, t) if o.id != item.id] for t in targets]
+    options = [[o.id for o in _members(scene, t) if o.id != item.id] for t in targets]
     if kind == "between":
         firsts, seconds = options[0], options[-1]
         return any(is_met(scene, item.id, Relation(kind, (a, b)), frame) for a in firsts for b in seconds if a != b)
@@ -240,7 +240,7 @@ def access_shares(scene: Scene, frame: RoomFrame) -> Mapping[str, float]:
         edge = scene.support_of(item.id)
         if edge is None or (scene.has_object(edge.parent) and broad(scene.object(edge.parent).category) != "rug"):
             continue
-        others = _raster(frame, [footprint_of(o) for o in floor if o.id != item.id and not _tucked(o, item)])
+        others = _raster(frame, [footprint_of(o) for o in floor if o.id != item.id and not _is_tucked(o, item)])
         free = (_raster(frame, [frame.outline]) > 0) & (others == 0)
         sides = (0.0,) if broad(item.category) not in ("plant", "floor lamp", "table", "coffee table", "bed") else (
             0.0, np.pi / 2, np.pi, -np.pi / 2
@@ -249,7 +249,7 @@ def access_shares(scene: Scene, frame: RoomFrame) -> Mapping[str, float]:
     return shares
 
 
-def _tucked(seat: SceneObject, host: SceneObject) -> bool:
+def _is_tucked(seat: SceneObject, host: SceneObject) -> bool:
     """Whether a seat belongs at a table: it does not bar the way to it, nor the table to the seat."""
     seats, tables = ("chair", "office chair", "stool", "bench"), ("table", "desk", "kitchen counter", "piano")
     pair = {broad(seat.category), broad(host.category)}

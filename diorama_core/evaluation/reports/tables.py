@@ -56,7 +56,7 @@ class Table:
             name = f"{row.name} (paper, {OTHER})" if row.from_paper else f"**{row.name}**"
             spans = row.intervals or (None,) * len(row.values)
             cells = [
-                _written(v, c.form) + _span(span, c.form)
+                _format(v, c.form) + _span(span, c.form)
                 for v, c, span in zip(row.values, self.columns, spans, strict=True)
             ]
             lines.append(f"| {name} | {' | '.join(cells)} |")
@@ -92,7 +92,7 @@ def paper_rows(rows: Mapping[str, Sequence[Value]]) -> tuple[Row, ...]:
     return tuple(Row(name, tuple(values), from_paper=True) for name, values in rows.items())
 
 
-def _written(value: Value, form: str) -> str:
+def _format(value: Value, form: str) -> str:
     if value is None:
         return "–"
     return value if isinstance(value, str) else format(value, form)
@@ -100,7 +100,7 @@ def _written(value: Value, form: str) -> str:
 
 def _span(interval: tuple[float, float] | None, form: str) -> str:
     """An interval as written behind its value."""
-    return "" if interval is None else f" ({_written(interval[0], form)} to {_written(interval[1], form)})"
+    return "" if interval is None else f" ({_format(interval[0], form)} to {_format(interval[1], form)})"
 
 
 Group = TypeVar("Group")
@@ -144,7 +144,7 @@ def statistic_interval(
         groups: Drawn whole, such as photos with their objects.
         statistic: Of the groups drawn; draws for which it is None are left out.
     """
-    values = [statistic([groups[k] for k in drawn]) for drawn in _drawn(len(groups), GROUP_DRAWS)]
+    values = [statistic([groups[k] for k in drawn]) for drawn in _draws(len(groups), GROUP_DRAWS)]
     return _percentiles(values, COVERAGE)
 
 
@@ -161,13 +161,13 @@ def paired_interval(
         statistic: Of the groups drawn; draws for which either is None are left out.
     """
     values = []
-    for drawn in _drawn(len(before), GROUP_DRAWS):
+    for drawn in _draws(len(before), GROUP_DRAWS):
         old, new = statistic([before[k] for k in drawn]), statistic([after[k] for k in drawn])
         values.append(None if old is None or new is None else new - old)
     return _percentiles(values, COVERAGE)
 
 
-def _drawn(count: int, draws: int) -> Iterator[list[int]]:
+def _draws(count: int, draws: int) -> Iterator[list[int]]:
     rng = np.random.default_rng(0)
     return (rng.integers(count, size=count).tolist() for _ in range(draws if count > 1 else 0))
 

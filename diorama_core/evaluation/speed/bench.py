@@ -34,8 +34,8 @@ __all__ = [
     "Extent",
     "Series",
     "SpeedBench",
-    "committed_figures",
     "memory_table",
+    "read_figures",
     "regression_bytes",
     "regression_table",
     "run",
@@ -162,7 +162,7 @@ def run(
         before: Figures to compare with; None takes the committed ones.
     """
     extent.check()
-    known = committed_figures() if before is None else before
+    known = read_figures() if before is None else before
     sticks = [yardstick_s()]
     series = measure.stages_by_objects(library, seed, extent.large_scene_objects, progress.part(0.0, 0.55))
     sticks.append(yardstick_s())
@@ -242,7 +242,7 @@ def regression_bytes(figures: dict[str, float]) -> bytes:
     return (json.dumps({"note": NOTE, "figures": rounded}, indent=1) + "\n").encode()
 
 
-def committed_figures(path: Path | None = None) -> dict[str, float]:
+def read_figures(path: Path | None = None) -> dict[str, float]:
     """The figures of a regression file; None reads the one that comes with the package.
 
     Raises:

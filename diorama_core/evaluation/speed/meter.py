@@ -78,10 +78,10 @@ def yardstick_s() -> float:
 
     Costs divided by it can be compared between machines, and between a quiet and a busy one.
     """
-    return min(cost_of(_fixed_work).seconds for _ in range(YARDSTICK_REPEATS))
+    return min(cost_of(_work).seconds for _ in range(YARDSTICK_REPEATS))
 
 
-def _fixed_work() -> float:
+def _work() -> float:
     points = np.linspace(0.0, 1.0, 300_000).reshape(-1, 3)
     total = 0.0
     for k in range(4):

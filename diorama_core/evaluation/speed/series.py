@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from diorama_core.artefacts import Inputs
-from diorama_core.evaluation.benchmarks.cases import Case, furnished
+from diorama_core.evaluation.benchmarks.cases import Case, furnish
 from diorama_core.evaluation.speed.eager import WAYS, step_seconds
 from diorama_core.evaluation.speed.meter import Cost, StageClock, cost_of, growth_exponent
 from diorama_core.export.gltf import glb_bytes
@@ -138,7 +138,7 @@ def stages_by_size(
         progress: reports and cancellation.
     """
     collected = Collected(MEGAPIXELS)
-    scene = furnished(Case(seed, "living"), library)
+    scene = furnish(Case(seed, "living"), library)
     camera = sample_cameras(scene, library, seed, 1)[0]
     studio = Studio(scene, library)
     build_scene(studio.view(camera, sizes[0]).inputs, library)  # makes ready the shapes that later builds find ready

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from diorama_core.evaluation.benchmarks.ablation import Figures, built, certificate, changes
+from diorama_core.evaluation.benchmarks.ablation import Figures, build, certificate, changes
 from diorama_core.evaluation.benchmarks.photo_build import PhotoScores
 from diorama_core.evaluation.benchmarks.photos import PhotoPlan
 from diorama_core.evaluation.benchmarks.system_tables import CaseResult
@@ -49,4 +49,4 @@ def test_a_certificate_says_what_was_measured_on_what():
 
 
 def test_nothing_is_built_of_no_photos():
-    assert built({"layout.weights.outline": 2.0}, PhotoPlan(()), built_in_library()) == Figures(())
+    assert build({"layout.weights.outline": 2.0}, PhotoPlan(()), built_in_library()) == Figures(())

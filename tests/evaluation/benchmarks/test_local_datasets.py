@@ -14,8 +14,8 @@ from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.scan2cad import SHAPENET_CATEGORIES, AlignedModel, ScanFrame
 from diorama_core.evaluation.benchmarks.local_datasets import (
     LocalResult,
-    aligned,
-    aligned_table,
+    alignment_table,
+    alignments,
     local_cases,
     run,
     scan2cad_class,
@@ -149,20 +149,20 @@ def test_models_are_aligned_in_the_world_of_the_scan():
     elsewhere = np.eye(4)
     elsewhere[:3, :3], elsewhere[:3, 3] = yaw_rotation(-1.0), [4, 5, 0]
     scene = moved(Scene(camera=frame.camera, objects=(item,)), elsewhere)
-    assert aligned([model], scene, frame) == (("chair", True),)
-    assert aligned([model, model], scene, frame) == (("chair", True), ("chair", False))
+    assert alignments([model], scene, frame) == (("chair", True),)
+    assert alignments([model, model], scene, frame) == (("chair", True), ("chair", False))
     shifted = moved(Scene(camera=frame.camera, objects=(item,)), elsewhere)
     far = SceneObject("a", "chair", "chair", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose.moved([0.3, 0, 0]))
-    assert aligned([model], Scene(camera=shifted.camera, objects=(far,)), frame) == (("chair", False),)
+    assert alignments([model], Scene(camera=shifted.camera, objects=(far,)), frame) == (("chair", False),)
     table = SceneObject("a", "table", "table", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose)
-    assert aligned([model], Scene(camera=shifted.camera, objects=(table,)), frame) == (("chair", False),)
+    assert alignments([model], Scene(camera=shifted.camera, objects=(table,)), frame) == (("chair", False),)
     stool = SceneObject("a", "stool", "stool", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose)
-    assert aligned([model], Scene(camera=shifted.camera, objects=(stool,)), frame) == (("chair", True),)
+    assert alignments([model], Scene(camera=shifted.camera, objects=(stool,)), frame) == (("chair", True),)
 
 
 def test_the_table_by_category_stands_beside_the_papers():
     models = (("chair", True), ("chair", False), ("monitor", True), ("lamp", False))
-    table = aligned_table([LocalResult("a", 4, 2, 0.5, None, models, 1.0, 1.0, 0.0, 0.0, 1.0)])
+    table = alignment_table([LocalResult("a", 4, 2, 0.5, None, models, 1.0, 1.0, 0.0, 0.0, 1.0)])
     row = table.row("embedded")
     assert (row["chair"], row["display"], row["others"], row["sofa"]) == (50.0, 100.0, 0.0, None)
     assert (row["class mean"], row["instance mean"]) == (50.0, 50.0)

@@ -11,8 +11,8 @@ from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto
 from diorama_core.evaluation.benchmarks.photo_perturbations import (
     PERTURBATIONS,
     AnnotatedInputs,
+    perturb,
     perturbations_named,
-    perturbed,
 )
 from diorama_core.scene.types import Intrinsics
 
@@ -39,7 +39,7 @@ def case() -> AnnotatedInputs:
 
 @pytest.mark.parametrize("name", PERTURBATIONS)
 def test_the_same_each_time_and_whole(case, name):
-    one, two = perturbed(case, name), perturbed(case, name)
+    one, two = perturb(case, name), perturb(case, name)
     assert one.inputs == two.inputs
     assert one.annotation == two.annotation
     assert len(one.inputs.boxes) == len(one.annotation.objects) == len(one.indices)
@@ -49,17 +49,17 @@ def test_the_same_each_time_and_whole(case, name):
 
 
 def test_mirrored_twice_is_as_it_was(case):
-    once = perturbed(case, "mirrored")
+    once = perturb(case, "mirrored")
     assert once.annotation.objects[0].front == 290
     assert once.annotation.objects[0].bbox == (140, 40, 180, 90)
     assert once.inputs.intrinsics.cx == 110
-    twice = perturbed(once, "mirrored")
+    twice = perturb(once, "mirrored")
     assert twice.inputs == case.inputs
     assert twice.annotation == case.annotation
 
 
 def test_jittered_boxes_are_judged_by_the_true_ones(case):
-    moved = perturbed(case, "jittered")
+    moved = perturb(case, "jittered")
     assert moved.annotation == case.annotation
     off = np.array([b.box for b in moved.inputs.boxes]) - np.array(BOXES)
     assert 0 < np.abs(off).max() < 15
@@ -67,7 +67,7 @@ def test_jittered_boxes_are_judged_by_the_true_ones(case):
 
 def test_dropped_boxes_are_neither_given_nor_asked_for(case):
     for seed in range(20):
-        left = perturbed(case, "dropped", seed)
+        left = perturb(case, "dropped", seed)
         assert len(left.indices) == 3
         assert [o.bbox for o in left.annotation.objects] == [BOXES[k] for k in left.indices]
         if 1 in left.indices:
@@ -76,7 +76,7 @@ def test_dropped_boxes_are_neither_given_nor_asked_for(case):
 
 
 def test_colours_follow_the_light(case):
-    lit = perturbed(case, "exposed")
+    lit = perturb(case, "exposed")
     shown = lit.inputs.photo.rgb[60, 40]
     assert np.abs(shown.astype(float) - COLOUR).max() > 5
     assert lit.annotation.objects[0].colour == pytest.approx(shown, abs=1)
@@ -84,7 +84,7 @@ def test_colours_follow_the_light(case):
 
 @pytest.mark.parametrize("name", ["rolled", "cropped"])
 def test_boxes_follow_the_picture(case, name):
-    moved = perturbed(case, name)
+    moved = perturb(case, name)
     for place, index in enumerate(moved.indices[:3]):
         x1, y1, x2, y2 = moved.annotation.objects[place].bbox
         inside = moved.inputs.photo.rgb[int(y1 + 5) : int(y2 - 5), int(x1 + 5) : int(x2 - 5)]
@@ -93,7 +93,7 @@ def test_boxes_follow_the_picture(case, name):
 
 
 def test_a_crop_moves_the_camera_s_centre_and_leaves_out_what_it_cuts_off(case):
-    cut = perturbed(case, "cropped")
+    cut = perturb(case, "cropped")
     assert cut.inputs.photo.width < WIDTH
     assert 3 not in cut.indices
     shift = BOXES[2][0] - cut.annotation.objects[cut.indices.index(2)].bbox[0]

@@ -13,7 +13,7 @@ from diorama_core.evaluation.benchmarks.retrieval import (
     RetrievalResult,
     _alone,
     _nearest,
-    _ranked,
+    _ranks,
     published_stages,
     retrieval_table,
 )
@@ -82,7 +82,7 @@ def test_each_network_gets_the_publications_rows(
     stages = published_stages({"CLIP": ByColour(), "OS": ByColour(), "DD": ByColour()})
     assert list(stages) == ["CLIP-H", "OS-H", "DD-T", "DD-V", "DD-H"]
     for stage in stages.values():
-        found = _ranked(stage(LIBRARY), view)
+        found = _ranks(stage(LIBRARY), view)
         assert all(len(found[view.scene.objects[index].id]) >= 5 for index in view.asked)
     item = RetrievalResult(
         "r",

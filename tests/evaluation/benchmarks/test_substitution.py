@@ -11,10 +11,10 @@ from diorama_core.arrangement.support_hypotheses import MEASURED, REASONED, Obse
 from diorama_core.artefacts import Cuboid, Inputs, ObjectGeometry, Photo
 from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.substitution import (
+    enlarge,
     geometry_with,
     heading_change,
     parse_substitutes,
-    scaled,
     size_along_axes,
 )
 from diorama_core.pipeline.scene_steps import position_noise
@@ -68,7 +68,7 @@ def test_true_distance_moves_along_the_ray_and_keeps_the_picture() -> None:
 @settings(max_examples=20)
 @given(st.floats(0.4, 2.5))
 def test_another_scale_keeps_the_picture(factor: float) -> None:
-    before, after = estimate(), scaled(estimate(), factor)
+    before, after = estimate(), enlarge(estimate(), factor)
     assert after.camera.position[2] == pytest.approx(factor * 1.8)
     old, new = (g.camera.project(g.cuboids[0].corners_world) for g in (before, after))
     assert np.allclose(old, new)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from diorama_core.artefacts import LabelledBox
-from diorama_core.evaluation.benchmarks.system import called_loosely
+from diorama_core.evaluation.benchmarks.system import loosen_name
 
 
 def said_of(kind: str) -> tuple[str, str]:
-    box = called_loosely(LabelledBox((0.0, 0.0, 9.0, 9.0), kind, kind))
+    box = loosen_name(LabelledBox((0.0, 0.0, 9.0, 9.0), kind, kind))
     return box.label, box.category
 
 

@@ -18,7 +18,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.taxonomy import category
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
-from diorama_core.text.compose import composed_room
+from diorama_core.text.compose import compose_room
 
 PROMPT = "a sofa against the wall and a red rug under a coffee table"
 ASKED = Asked(
@@ -31,7 +31,7 @@ ASKED = Asked(
 
 @pytest.fixture(scope="module")
 def room() -> Scene:
-    return composed_room(PROMPT, built_in_library()).scene
+    return compose_room(PROMPT, built_in_library()).scene
 
 
 def test_prompts_are_64_and_ask_for_what_there_is() -> None:

@@ -13,7 +13,7 @@ from jaxtyping import Float
 from diorama_core.artefacts import LabelledBox
 from diorama_core.evaluation.benchmarks import views
 from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, recipe
-from diorama_core.evaluation.benchmarks.views import ALONE, SPHERE, RoomView, ViewsBench, ViewsResult, photographed, run
+from diorama_core.evaluation.benchmarks.views import ALONE, SPHERE, RoomView, ViewsBench, ViewsResult, photograph, run
 from diorama_core.evaluation.metrics.pose import Alignment
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
@@ -49,7 +49,7 @@ SEED = 38
 def pictures() -> tuple[RoomView, ...]:
     """Pictures of the first room of a series, from two places."""
     tested = split_library(built_in_library(), "test")
-    return made_once("two views", lambda: photographed(recipe(1, 1, SEED)[0], tested, 2, SMALL))
+    return made_once("two views", lambda: photograph(recipe(1, 1, SEED)[0], tested, 2, SMALL))
 
 
 def test_pictures_show_one_room_from_different_places() -> None:
@@ -93,7 +93,7 @@ def marked_sphere(studio: Studio, T_world_sphere: Float[np.ndarray, "4 4"]) -> F
 
 @pytest.mark.slow
 def test_a_room_is_built_from_two_photos(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(views, "photographed", marked)
+    monkeypatch.setattr(views, "photograph", marked)
     monkeypatch.setattr(views, "sphere_photo", marked_sphere)
     monkeypatch.setattr(views, "layout_recipe", lambda *given, **more: AsItIs())
     monkeypatch.setattr(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedObject
-from diorama_core.evaluation.metrics.annotated import agreement, front_deg, measured, not_built, shape_iou
+from diorama_core.evaluation.metrics.annotated import agreement, front_deg, measure, not_built, shape_iou
 from diorama_core.geometry.projection import visible_bounds
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene import edits
@@ -52,7 +52,7 @@ def test_what_is_compared() -> None:
     item = placed("chair-slat-oak", -60, (1.0, 0.0, 0.0), others=("office-chair-mesh-black",))
     scene = Scene(camera=CAMERA, objects=(item,))
     stated = annotated(bbox=item.box_px, front=0, colour=(255, 0, 0), attributes={"arms": "no"})
-    found = measured("p", 0, stated, item, scene, LIBRARY, {}, np.array([1.0, 0.0, 0.0]))
+    found = measure("p", 0, stated, item, scene, LIBRARY, {}, np.array([1.0, 0.0, 0.0]))
     assert found.loose
     assert (found.kind_first, found.kind_among) == (False, True)
     assert found.form == {"arms": True}
@@ -65,7 +65,7 @@ def test_what_is_compared() -> None:
 
 def test_turns_that_look_the_same_are_the_same_front() -> None:
     item = placed("table-oak-classic", 90)
-    found = measured("p", 0, annotated(front=0), item, Scene(camera=CAMERA, objects=(item,)), LIBRARY, {})
+    found = measure("p", 0, annotated(front=0), item, Scene(camera=CAMERA, objects=(item,)), LIBRARY, {})
     assert found.front_error_deg == pytest.approx(0.0, abs=1e-6)
 
 
@@ -73,8 +73,8 @@ def test_a_carrier_is_an_index_of_the_list() -> None:
     table, lamp = placed("table-oak-classic", 0, name="table"), placed("chair-slat-oak", 0, name="lamp")
     scene = Scene(camera=CAMERA, objects=(table, lamp), supports=(Support("lamp", "table"),))
     index_of = {"table": 3, "lamp": 5}
-    assert measured("p", 5, annotated(on=3), lamp, scene, LIBRARY, index_of).supporter is True
-    assert measured("p", 5, annotated(on="floor"), lamp, scene, LIBRARY, index_of).supporter is False
+    assert measure("p", 5, annotated(on=3), lamp, scene, LIBRARY, index_of).supporter is True
+    assert measure("p", 5, annotated(on="floor"), lamp, scene, LIBRARY, index_of).supporter is False
 
 
 def test_what_was_not_built_is_wrong_and_an_opening_is_not_judged() -> None:

@@ -11,7 +11,7 @@ from diorama_core.evaluation.metrics.pose import (
     Alignment,
     Placed,
     object_alignment,
-    pooled,
+    pool,
     rotation_angle,
     scene_alignment,
 )
@@ -85,9 +85,9 @@ def test_small_scenes() -> None:
 
 
 def test_scenes_are_pooled_by_their_objects() -> None:
-    mean = pooled([Alignment("x", 3, 1.0, 1.0, 1.0, 1.0), Alignment("x", 1, 0.0, 0.0, 0.0, 0.0)])
+    mean = pool([Alignment("x", 3, 1.0, 1.0, 1.0, 1.0), Alignment("x", 1, 0.0, 0.0, 0.0, 0.0)])
     assert (mean.count, mean.acc) == (4, 0.75)
-    assert pooled([]).count == 0
+    assert pool([]).count == 0
 
 
 @settings(max_examples=20)

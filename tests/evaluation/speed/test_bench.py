@@ -13,8 +13,8 @@ from diorama_core.evaluation.speed.bench import (
     Extent,
     Series,
     SpeedBench,
-    committed_figures,
     memory_table,
+    read_figures,
     regression_bytes,
     regression_table,
     slower,
@@ -89,16 +89,16 @@ def test_what_became_slower_is_named():
 def test_figures_survive_their_file(tmp_path):
     path = tmp_path / "figures.json"
     path.write_bytes(regression_bytes({"a": 1.23456, "b": 2.0}))
-    assert committed_figures(path) == {"a": 1.235, "b": 2.0}
+    assert read_figures(path) == {"a": 1.235, "b": 2.0}
     with pytest.raises(InputError, match="measure something"):
         regression_bytes({})
     path.write_text("[]")
     with pytest.raises(InputError, match="--keep"):
-        committed_figures(path)
+        read_figures(path)
 
 
 def test_the_committed_figures_cover_stages_and_growth():
-    figures = committed_figures()
+    figures = read_figures()
     assert all(np.isfinite(v) for v in figures.values())
     for stage in ("pose", "layout", "retrieval", "render with truth", "whole build"):
         assert f"{stage} at 20 objects" in figures
