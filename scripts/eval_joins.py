@@ -22,7 +22,7 @@ from jaxtyping import Float
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from diorama_core.editing.homes import as_one_door, placed_at_door
+from diorama_core.editing.homes import as_one_door, place_at_door
 from diorama_core.errors import DioramaError
 from diorama_core.evaluation.benchmarks.cases import SIZE, furnish, parse_seeds, recipe
 from diorama_core.geometry.openings import DOOR, wall_of
@@ -134,8 +134,8 @@ def measured(first: Room, second: Room) -> tuple[float, float, float]:
     names = doors[0].id, doors[1].id
     scenes = as_one_door(first[2], second[2], *names)
     off = sum(wall_error(r, s, s.object(n)) for r, s, n in zip((first, second), scenes, names, strict=True))
-    made = placed_at_door(*scenes, *names)
-    true = placed_at_door(first[0].scene, second[0].scene, first[1].id, second[1].id)
+    made = place_at_door(*scenes, *names)
+    true = place_at_door(first[0].scene, second[0].scene, first[1].id, second[1].id)
     seen = ((first[2], made, second[2]), (first[0].scene, true, second[0].scene))
     cameras = [np.linalg.inv(view_of(a)) @ T @ view_of(b) for a, T, b in seen]
     turn = np.degrees(np.arccos(np.clip((np.trace(cameras[0][:3, :3].T @ cameras[1][:3, :3]) - 1) / 2, -1, 1)))

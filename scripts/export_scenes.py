@@ -19,7 +19,7 @@ from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.room_edits import set_surface_finish
 from diorama_core.scene.types import Plane, Pose, Scene
-from diorama_core.synthesis import furnished_room, sample_cameras
+from diorama_core.synthesis import furnish_room, sample_cameras
 from diorama_core.synthesis.finishes import finish_textures
 from tests.importing.roomplan_files import write_json
 
@@ -55,7 +55,7 @@ def made(seeds: Iterable[int], library: ShapeLibrary) -> Iterator[Source]:
     """Furnished rooms."""
     for seed in seeds:
         kind = ROOMS[seed % len(ROOMS)]
-        scene = furnished_room(seed, kind, library)
+        scene = furnish_room(seed, kind, library)
         camera = next(iter(sample_cameras(scene, library, seed)), None)
         yield Source(f"{kind} room {seed}", replace(scene, camera=camera), finish_textures(scene.architecture))
 

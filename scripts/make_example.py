@@ -33,7 +33,7 @@ from diorama_core.project.storage import Project
 from diorama_core.render.picture import looking_along
 from diorama_core.render.raycast import MeshCaster, OrthographicView, render_buffers
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Pose, Scene, SceneObject, yaw_rotation
-from diorama_core.synthesis.photograph import photographed
+from diorama_core.synthesis.photograph import photograph
 
 SIZE, DRAFT = (1280, 960), (640, 480)
 LEFT, RIGHT, NEAR, FAR, HEIGHT = -2.9, 2.9, -1.6, 5.55, 2.55
@@ -325,7 +325,7 @@ def draw(library: ShapeLibrary, out: Path, draft: bool) -> None:
     light = cycles_radiance(
         scene, library, outdoors(), lens=LENS, textures={"planks": planks()}, samples=samples, seed=SEED
     )
-    image = photographed(light, k, WHITE, seed=SEED)
+    image = photograph(light, k, WHITE, seed=SEED)
     out.mkdir(parents=True, exist_ok=True)
     Image.fromarray(image).save(out / "photo.jpg", quality=88, optimize=True)
     numbers = {"width": k.width, "height": k.height, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy}

@@ -67,7 +67,7 @@ def axis(text: str) -> str:
 
 
 def _add(a: argparse.Namespace) -> None:
-    from diorama_core.library.datasets import as_sources, dataset_named, recognised
+    from diorama_core.library.datasets import as_sources, dataset_named, recognise
     from diorama_core.library.ingest.adding import add_models
     from diorama_core.library.ingest.finding import model_files, read_table, sources
     from diorama_core.library.ingest.given import Given
@@ -78,7 +78,7 @@ def _add(a: argparse.Namespace) -> None:
     folder = a.folder.expanduser().absolute()
     given = Given(a.up, a.front, a.unit, a.category)
     paths, skipped = model_files(folder)
-    dataset = recognised(folder) if a.dataset == "auto" else None if a.dataset == "none" else dataset_named(a.dataset)
+    dataset = recognise(folder) if a.dataset == "auto" else None if a.dataset == "none" else dataset_named(a.dataset)
     if dataset is not None and a.table is None:
         print(f"diorama: read as a copy of {dataset.name}", file=sys.stderr)
         models = as_sources(dataset, folder, given)

@@ -18,7 +18,7 @@ from diorama_core.errors import InputError
 from diorama_core.export import Format
 from diorama_core.io.atomic import write_atomically
 from diorama_core.progress import Progress
-from diorama_core.synthesis.variants import ASPECTS, Aspect, Variant, VariantMaker, locked_where_restless
+from diorama_core.synthesis.variants import ASPECTS, Aspect, Variant, VariantMaker, lock_restless
 
 if TYPE_CHECKING:
     from diorama_core.export.gathering import ExportOptions
@@ -60,7 +60,7 @@ def write_variants(
     """
     if unknown := sorted(set(aspects) - set(ASPECTS)):
         raise InputError(f"--vary {unknown[0]}: choose of {', '.join(ASPECTS)}")
-    scene, locked = locked_where_restless(room.scene, room.library)
+    scene, locked = lock_restless(room.scene, room.library)
     maker = VariantMaker(scene, room.library, cast("Sequence[Aspect]", aspects))
     folder.mkdir(parents=True, exist_ok=True)
     rows: list[dict[str, Any]] = []

@@ -16,8 +16,8 @@ from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.strings import _
 from diorama_core.editing import aligning as arranging
-from diorama_core.editing.clipboard import copied, free_offset, pasted, pasted_at
-from diorama_core.editing.placing import seated
+from diorama_core.editing.clipboard import clip_of, free_offset, paste_at, paste_clip
+from diorama_core.editing.placing import seat
 from diorama_core.errors import EditRefused
 from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Scene
@@ -158,7 +158,7 @@ def _selection(session: EditorSession) -> tuple[Command, ...]:
 
 def _objects(session: EditorSession) -> tuple[Command, ...]:
     def copy(client: Client) -> None:
-        session.shared.clip = copied(session.scene, client.need_selection())
+        session.shared.clip = clip_of(session.scene, client.need_selection())
         client.notice(_("Copied {names}.").format(names=editing.names_of(session.scene, client.selection)))
 
     def cut(client: Client) -> None:
@@ -171,9 +171,9 @@ def _objects(session: EditorSession) -> tuple[Command, ...]:
         clip, here = session.shared.clip, session.scene
         original = all(here.has_object(o.id) and here.object(o.id) == o for o in clip.objects)
         scene, heads = (
-            pasted(here, clip, free_offset(here, clip))
+            paste_clip(here, clip, free_offset(here, clip))
             if original
-            else pasted_at(here, clip, client.view.camera.point_on_level(floor_height(client.room())))
+            else paste_at(here, clip, client.view.camera.point_on_level(floor_height(client.room())))
         )
         label = _("paste {names}").format(names=editing.names_of(scene, heads))
         session.commit(label, scene, by=client, selection=heads)
@@ -191,7 +191,7 @@ def _objects(session: EditorSession) -> tuple[Command, ...]:
 
         def down(scene: Scene) -> Scene:
             for object_id in chosen:
-                scene = seated(scene, session.library, object_id)
+                scene = seat(scene, session.library, object_id)
             return scene
 
         label = _("drop {names}").format(names=editing.names_of(session.scene, chosen))

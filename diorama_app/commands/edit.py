@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from diorama_app.session.client import Client
 from diorama_app.strings import _, plural
-from diorama_core.editing.clearances import SIDES, moved_to_clearance
+from diorama_core.editing.clearances import SIDES, set_clearance
 from diorama_core.editing.support_changes import attach_to_room_floor
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
@@ -220,7 +220,7 @@ def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = Fal
         parent_id: of the object or plane.
         anyway: whether size and weight do not matter.
     """
-    from diorama_core.editing.placing import seated
+    from diorama_core.editing.placing import seat
     from diorama_core.editing.support_changes import why_not_on
 
     session = client.session
@@ -248,7 +248,7 @@ def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = Fal
     step = _("put {label} onto {supporter}").format(label=label, supporter=supporter_name(scene, parent_id))
     session.edit(
         step,
-        lambda s: seated(edits.attach(s, edge), session.library, object_id),
+        lambda s: seat(edits.attach(s, edge), session.library, object_id),
         by=client,
         by_hand=True,
     )
@@ -310,7 +310,7 @@ def set_distance(client: Client, object_id: str, side: str, distance_m: float) -
         raise EditRefused("a distance is to the front, back, left or right")
     client.session.edit(
         _("move {label}").format(label=item.label),
-        lambda s: moved_to_clearance(s, object_id, known, distance_m),
+        lambda s: set_clearance(s, object_id, known, distance_m),
         by=client,
         by_hand=True,
     )

@@ -124,14 +124,14 @@ def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, cat
         EditRefused: when the shape is not one of one's own.
         InputError: when the category is unknown.
     """
-    from diorama_core.library.ingest.correct import corrected
+    from diorama_core.library.ingest.correct import correct
 
     session = client.session
     item, user_library = session.scene.object(object_id), session.library
     if not isinstance(user_library, UserLibrary) or not user_library.has_own(item.shape_id):
         raise EditRefused("only models that you uploaded can be corrected; upload one in the Library tab")
     store, change = user_library.own(), fix or Fix("", "")
-    ingested = corrected(store, item.shape_id, up=change.up, front=change.front, scale=change.scale, category=category)
+    ingested = correct(store, item.shape_id, up=change.up, front=change.front, scale=change.scale, category=category)
     stem = item.shape_id.partition("~")[0]
     record = replace(
         ingested.record, id=f"{stem}~{ingested.record.content_hash[:6]}-{ingested.record.category.replace(' ', '-')}"

@@ -21,7 +21,7 @@ from diorama_core.editing.placing import (
     hits_along,
     insertion,
     places_of,
-    seated,
+    seat,
     spot_in_view,
 )
 from diorama_core.editing.relations import SEATS
@@ -92,7 +92,7 @@ def _insert_on(client: Client, shape: Shape, new_id: str, parent: SceneObject) -
     pose = Pose.upright(top + np.array([0.0, 0.0, size[2] / 2]), parent.pose.yaw_rad)
     item = SceneObject(new_id, shape.category, shape.category, shape.id, size, pose)
     put = edits.insert(session.scene, item, Support(new_id, parent.id))
-    return None if why_not_on(put, new_id, parent.id) else seated(put, session.library, new_id)
+    return None if why_not_on(put, new_id, parent.id) else seat(put, session.library, new_id)
 
 
 def _hang_in_view(client: Client, shape_id: str) -> bool:

@@ -15,7 +15,7 @@ from jaxtyping import Float
 from diorama_app.commands.optimise import untouched
 from diorama_app.session.client import Client, Playing
 from diorama_app.strings import _
-from diorama_core.editing.support_changes import held_again
+from diorama_core.editing.support_changes import reattach
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rotations import rotation_vector
 from diorama_core.progress import Progress
@@ -120,4 +120,4 @@ def _keep(client: Client, start: Scene, final: Scene) -> None:
         session.refresh()
         return
     played = edits.place(session.scene, moved)
-    session.commit("play", held_again(session.scene, played), by=client)
+    session.commit("play", reattach(session.scene, played), by=client)

@@ -26,7 +26,7 @@ from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_core.errors import DioramaError, EditRefused, ExportError, InputError, ProjectError, UnavailableError
 from diorama_core.export import Format
 from diorama_core.export.gathering import ExportOptions
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.io.text import clean_text
 from diorama_core.project.storage import read_scene
 
@@ -77,7 +77,7 @@ def answer_of(queue: JobQueue, job: Job) -> JobAnswer:
         notes = _notes(project.info())
         objects = _object_count(project.scene_path) if job.state == "done" else None
     except DioramaError as error:
-        damage = shortened(str(error))
+        damage = shorten(str(error))
     return JobAnswer(
         id=job.id,
         state=job.state,
@@ -94,7 +94,7 @@ def answer_of(queue: JobQueue, job: Job) -> JobAnswer:
 def _notes(info: dict[str, Any]) -> list[str]:
     """What the project's build had to say; a file from elsewhere may hold anything there."""
     listed = info.get("notes") or info.get("warnings")
-    return [shortened(str(n), MAX_NOTE_LENGTH) for n in (listed if isinstance(listed, list) else [])[:MAX_NOTES]]
+    return [shorten(str(n), MAX_NOTE_LENGTH) for n in (listed if isinstance(listed, list) else [])[:MAX_NOTES]]
 
 
 def _object_count(path: Path) -> int:

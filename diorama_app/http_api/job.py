@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, FiniteFloat, TypeAdapter
 
 from diorama_core.errors import DioramaError, ProjectError
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.io.text import clean_text, file_label
 from diorama_core.layout.settings import RecipeName
 from diorama_core.library.record import ShapeLibrary
@@ -115,6 +115,6 @@ def build_job(job: Job, folder: Path, library: ShapeLibrary, progress: Progress)
 def line_of(problem: Exception, job_id: str) -> str:
     """Why a build failed, in one line; what is unexpected is logged in full."""
     if isinstance(problem, DioramaError):
-        return shortened(str(problem), MAX_LINE)
+        return shorten(str(problem), MAX_LINE)
     log.error("the build of %s failed\n%s", job_id, clean_text("".join(traceback.format_exception(problem))))
-    return shortened(f"internal error ({type(problem).__name__}: {problem})")
+    return shorten(f"internal error ({type(problem).__name__}: {problem})")

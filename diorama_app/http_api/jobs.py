@@ -21,7 +21,7 @@ from typing import Literal
 from diorama_app.http_api.job import Job, State, build_job, line_of, note_job, noted_jobs
 from diorama_app.projects.begin import begin_project
 from diorama_core.errors import Cancelled, DioramaError, ProjectError
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.layout.settings import RecipeName
 from diorama_core.library.record import ShapeLibrary
@@ -159,7 +159,7 @@ class JobQueue:
         """A job; raises `UnknownJobError` where there is none."""
         with self._changed:
             if job_id not in self._jobs:
-                raise UnknownJobError(f"there is no job {shortened(job_id)!r}")
+                raise UnknownJobError(f"there is no job {shorten(job_id)!r}")
             return self._jobs[job_id]
 
     def progress(self, job: Job) -> ProgressEvent:

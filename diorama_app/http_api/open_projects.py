@@ -20,7 +20,7 @@ from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.session import EditorSession
 from diorama_core.api import Reconstruction
 from diorama_core.errors import DioramaError, EditRefused
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.progress import Progress
@@ -89,7 +89,7 @@ class OpenProjects:
         editor = self.running.workspace.editor(name)
         if editor is None:
             known = ", ".join(address_of(f) for f in self.folders()[:10]) or "none yet"
-            raise UnknownProjectError(f"there is no project {shortened(name)!r}; there are: {known}")
+            raise UnknownProjectError(f"there is no project {shorten(name)!r}; there are: {known}")
         return editor.session
 
     def page(self, session: EditorSession) -> str:
@@ -168,7 +168,7 @@ def edit(session: EditorSession, version: str, wanted: Sequence[Edit] | str, aut
 
     def commit() -> str:
         check()
-        label = shortened(proposed.command or "; ".join(proposed.lines), MAX_LABEL)
+        label = shorten(proposed.command or "; ".join(proposed.lines), MAX_LABEL)
         session.edit(label, lambda _: proposed.scene, author=author, by_hand=True)
         return session.document.version
 
@@ -182,7 +182,7 @@ def need_version(session: EditorSession, version: str) -> None:
         entry = session.document.history.current
         last = f"“{entry.label}”" + (f" by {entry.author}" if entry.author else "")
         raise StaleVersionError(
-            f"the scene is at version {now}, not {shortened(version)} (last change: {last}); look at it again"
+            f"the scene is at version {now}, not {shorten(version)} (last change: {last}); look at it again"
         )
 
 

@@ -32,7 +32,7 @@ from diorama_app.projects.manage import address_of, name_of
 from diorama_app.reconstruction.build_job import build
 from diorama_app.session.session import EditorSession
 from diorama_core.export.gathering import ExportOptions
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.review.questions import questions
 from diorama_core.scene.schema import scene_to_json
 
@@ -163,7 +163,7 @@ def optimise_project(session: Session, body: OptimiseRequest) -> answers.JobStat
         need_version(session, body.version)
         missing = next((i for i in body.only if not session.scene.has_object(i)), None)
         if missing is not None:
-            raise UnknownProjectError(f"there is no object {shortened(missing)!r} in this scene")
+            raise UnknownProjectError(f"there is no object {shorten(missing)!r} in this scene")
         optimise(session, body.recipe, tuple(body.only), author=body.author, by_hand_too=body.by_hand_too)
         return answers.job_answer(session)
 
@@ -212,7 +212,7 @@ def get_object(session: Session, object_id: str) -> answers.DetailAnswer:
     scene, reasons = session.scene, session.reasons
     if not scene.has_object(object_id):
         known = ", ".join(o.id for o in scene.objects[:30]) or "none"
-        raise UnknownProjectError(f"there is no object {shortened(object_id)!r} in this scene; there are: {known}")
+        raise UnknownProjectError(f"there is no object {shorten(object_id)!r} in this scene; there are: {known}")
     item = scene.object(object_id)
     about = answers.object_answer(scene, item, session.badges, reasons)
     return answers.detail_answer(scene, item, about, session.library, reasons)

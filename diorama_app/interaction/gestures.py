@@ -23,8 +23,8 @@ from diorama_app.session.units import format_length
 from diorama_app.strings import _
 from diorama_core.editing.clearances import clearances
 from diorama_core.editing.collisions import Collisions
-from diorama_core.editing.dragging import Slide, snapped_pose
-from diorama_core.editing.stretching import changed_poses
+from diorama_core.editing.dragging import Slide, snap_pose
+from diorama_core.editing.stretching import new_poses
 from diorama_core.geometry.rotations import quaternion_wxyz, rotation_from_quaternion
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
@@ -200,7 +200,7 @@ class Gestures:
         )
 
     def _resizing(self, start: Scene, now: Scene) -> None:
-        poses = changed_poses(start, now)
+        poses = new_poses(start, now)
         self._session.viewport.preview(poses)
         self._client.marks.collide({i for pair in self._collisions.pairs(now, list(poses)) for i in pair})
         self._client.show_marks(now)
@@ -284,7 +284,7 @@ class Gestures:
         start = drag.scene.object(drag.object_id)
         pose = Pose(rotation_from_quaternion(wxyz), position, start.pose.scale)
         if self._client.preferences.snap:
-            pose = snapped_pose(start.pose, pose)
+            pose = snap_pose(start.pose, pose)
         if phase != "end":
             moved = edits.move(drag.scene, drag.object_id, pose)
             poses = {o.id: o.pose for o in moved.objects if o is not drag.scene.object(o.id)}

@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from diorama_app.session.client import Client
 from diorama_app.strings import _
-from diorama_core.editing.stretching import HANDLES, Handle, changed_poses, handle_place, pulled_m, stretched
+from diorama_core.editing.stretching import HANDLES, Handle, handle_place, new_poses, pull_m, stretch
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene, SceneObject
@@ -127,10 +127,10 @@ class SizeHandles:
         if phase in ("update", "end"):
             eye = np.asarray(client.viser_client.camera.position, dtype=np.float64)
             start = pull.start.object(pull.object_id)
-            by_m = pulled_m(start, handle, pull.grabbed, eye, hand - eye)
+            by_m = pull_m(start, handle, pull.grabbed, eye, hand - eye)
             by_m = 0.0 if abs(by_m) < NOTHING_M else by_m
             snap = client.preferences.snap != inverted
-            pull.now = stretched(pull.start, pull.object_id, handle, by_m, snap=snap)
+            pull.now = stretch(pull.start, pull.object_id, handle, by_m, snap=snap)
             self._show_scene(pull.start, pull.now)
             self._put(pull.now.object(pull.object_id))
         if phase != "end":
@@ -144,7 +144,7 @@ class SizeHandles:
         if pull.now is pull.start or not session.scene.has_object(pull.object_id):
             session.refresh()
             return
-        poses = changed_poses(pull.start, pull.now)
+        poses = new_poses(pull.start, pull.now)
         label = pull.start.object(pull.object_id).label
 
         def apply(scene: Scene) -> Scene:

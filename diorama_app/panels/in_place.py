@@ -12,7 +12,7 @@ from diorama_app.session.connected_client import Panel
 from diorama_app.strings import _
 from diorama_app.web.html import LiveHtml, text
 from diorama_core.errors import DioramaError
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 
 log = logging.getLogger(__name__)
 
@@ -42,7 +42,7 @@ class InPlace(Generic[P]):
             self.panel.refresh()
         except Exception as error:  # whatever one panel does wrong, the page stands
             log.log(logging.DEBUG if self._line.body else logging.ERROR, "the panel %s", self._title, exc_info=True)
-            self._show(shortened(str(error)) if isinstance(error, DioramaError) else type(error).__name__)
+            self._show(shorten(str(error)) if isinstance(error, DioramaError) else type(error).__name__)
         else:
             self._show("")
 

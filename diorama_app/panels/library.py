@@ -16,7 +16,7 @@ from diorama_app.session.client import Client, Placing
 from diorama_app.session.units import format_size
 from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, text
-from diorama_core.library.browsing import Filters, Shelf, SizeClass, browsed, one_of_each
+from diorama_core.library.browsing import Filters, Shelf, SizeClass, browse, one_of_each
 from diorama_core.library.record import Shape
 from diorama_core.library.search import search
 from diorama_core.library.taxonomy import ROOMS
@@ -145,7 +145,7 @@ class LibraryPanel:
             return shapes
         if not self._filters.any:
             return one_of_each(shapes)
-        return browsed(
+        return browse(
             shapes,
             self._filters,
             favourites=preferences.favourites,

@@ -24,8 +24,8 @@ from diorama_app.viewport.annotation_canvas import (
 )
 from diorama_app.web.html import button, text
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
-from diorama_core.editing.box_checks import merged_boxes, too_tall
-from diorama_core.editing.input_corrections import labelled_box, same_object, with_box_at, without_box
+from diorama_core.editing.box_checks import merge_boxes, too_tall
+from diorama_core.editing.input_corrections import label_box, same_object, with_box_at, without_box
 from diorama_core.errors import InputError
 from diorama_core.library.taxonomy import CATEGORIES, column, is_furniture
 
@@ -100,8 +100,8 @@ class PhotoBoxes:
         inputs = self._client.marked
         if inputs is None:
             return
-        proposed = tuple(replace(labelled_box(b.box, b.label), guessed=True) for b in self._proposals(inputs))
-        accepted = merged_boxes((*inputs.boxes, *proposed))[len(merged_boxes(inputs.boxes)) :]
+        proposed = tuple(replace(label_box(b.box, b.label), guessed=True) for b in self._proposals(inputs))
+        accepted = merge_boxes((*inputs.boxes, *proposed))[len(merge_boxes(inputs.boxes)) :]
         if accepted:
             boxes = (*inputs.boxes, *accepted)
             doubtful = too_tall(boxes)
@@ -163,7 +163,7 @@ class PhotoBoxes:
                 marked = [b.box for b in inputs.boxes]
                 self._suggested(inputs).suggest(x, y, marked, lambda box: client.post(lambda: self._meant(photo, box)))
             case Accepted(i, label):
-                self._mark(inputs, labelled_box(rows[i].box, label or rows[i].label))
+                self._mark(inputs, label_box(rows[i].box, label or rows[i].label))
             case Dismissed(i):
                 self.dismiss(rows[i])
             case Selected(i):
@@ -182,7 +182,7 @@ class PhotoBoxes:
         if box is None:
             self._client.notice(_("Nothing was recognised there; drag a box around the object."))
         elif known is None:
-            self._mark(inputs, labelled_box(box.box, box.label))
+            self._mark(inputs, label_box(box.box, box.label))
         else:
             self._client.selected_box = known
             self._client.refresh()
@@ -191,7 +191,7 @@ class PhotoBoxes:
         """The likeliest name of a box that was drawn is known."""
         inputs = self._client.marked
         if inputs is not None and inputs.photo is photo:
-            self._mark(inputs, labelled_box(box.box, box.label))
+            self._mark(inputs, label_box(box.box, box.label))
 
     def _mark(self, inputs: Inputs, box: LabelledBox) -> None:
         """Add a box and select it, so that it can be named and changed at once."""
@@ -207,7 +207,7 @@ class PhotoBoxes:
         inputs, words = self._client.marked, " ".join(name.split())
         if inputs is None or not words or inputs.boxes[index].label == words:
             return
-        now = labelled_box(inputs.boxes[index].box, words)
+        now = label_box(inputs.boxes[index].box, words)
         label = _("change {label} to {words}").format(label=inputs.boxes[index].label, words=words)
         self._annotate(label, with_box_at(inputs, index, now))
 

@@ -17,7 +17,7 @@ from diorama_app.projects.folder_photos import DATA, PHOTOS
 from diorama_app.projects.packing import is_packed
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.importing.array_clouds import is_array_cloud
-from diorama_core.io.contained import content_of, unpacked
+from diorama_core.io.contained import content_of, unpack
 from diorama_core.io.file_heads import FileHead, head_of, what_else
 from diorama_core.perception.inputs.sorting import Recognised, Sort, recognised, recognised_alone
 from diorama_core.progress import Progress
@@ -97,7 +97,7 @@ def understood(content: bytes, name: str, photo_size: tuple[int, int] | None) ->
         head = head_of(path)
         if not head.is_zip or is_one_file(head):
             return Dropped(_file_readings(path, path.name, photo_size))
-        with unpacked(path, MAX_BYTES) as inside:
+        with unpack(path, MAX_BYTES) as inside:
             return _classify_folder(inside, path.name, photo_size)
 
 

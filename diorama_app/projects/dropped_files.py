@@ -11,7 +11,7 @@ from pathlib import Path
 from diorama_app.projects.dropped import MAX_BYTES, DroppedPhoto, is_one_file
 from diorama_app.projects.reading_again import with_depth
 from diorama_app.projects.uploads import Upload
-from diorama_core.io.contained import unpacked
+from diorama_core.io.contained import unpack
 from diorama_core.io.file_heads import head_of
 from diorama_core.perception.inputs.sorting import Sort
 from diorama_core.perception.inputs.source import Source
@@ -33,7 +33,7 @@ def files_of(name: str, content: bytes) -> dict[str, bytes]:
         path.write_bytes(content)
         if is_one_file(head_of(path)):
             return {path.name: content}
-        with unpacked(path, MAX_BYTES) as inside:
+        with unpack(path, MAX_BYTES) as inside:
             return {p.relative_to(inside).as_posix(): p.read_bytes() for p in inside.rglob("*") if p.is_file()}
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from diorama_app.projects.options import BuildOptions, PhotoFiles
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import read_json, shortened
+from diorama_core.io.bounded import read_json, shorten
 from diorama_core.io.code_key import code_key
 
 PHOTOS = frozenset(
@@ -130,7 +130,7 @@ def read_camera(path: Path) -> tuple[tuple[float, float, float, float] | None, f
     if name == "intrinsics" and isinstance(value, list) and len(value) == 4 and all(map(_is_number, value)):
         fx, fy, cx, cy = (float(v) for v in value)
         return (fx, fy, cx, cy), None
-    raise InputError(f"{path}: {shortened(name)} is not valid{advice}")
+    raise InputError(f"{path}: {shorten(name)} is not valid{advice}")
 
 
 def _is_number(value: object) -> bool:

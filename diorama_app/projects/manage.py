@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from diorama_core.errors import DioramaError, ProjectError
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.io.text import clean_text, file_label
 from diorama_core.project.storage import Project, read_scene
 from diorama_core.scene.types import Scene
@@ -72,7 +72,7 @@ def name_of(folder: Path) -> str:
 
 def rename_project(project: Project, name: str) -> None:
     """Rename a project; its folder does not change."""
-    words = shortened(clean_text(name), MAX_NAME)
+    words = shorten(clean_text(name), MAX_NAME)
     if not words:
         raise ProjectError("a project needs a name; type at least one character")
     project.update_info(name=words)

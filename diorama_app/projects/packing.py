@@ -13,7 +13,7 @@ from diorama_app.projects.begin import fresh_folder
 from diorama_app.projects.manage import not_copied
 from diorama_core.errors import InputError, ProjectError
 from diorama_core.io.atomic import write_atomically
-from diorama_core.io.contained import content_of, unpacked
+from diorama_core.io.contained import content_of, unpack
 from diorama_core.library.library_names import BUILT_IN
 from diorama_core.project.storage import OWN_SHAPES, Project
 
@@ -66,7 +66,7 @@ def unpack_project(file: Path, projects_dir: Path, *, folder: Path | None = None
     """
     if folder is not None and folder.exists():
         raise ProjectError(f"{folder} exists already; choose a new folder")
-    with unpacked(file, MAX_UNPACKED) as inside:
+    with unpack(file, MAX_UNPACKED) as inside:
         contents = content_of(inside)
         if not (contents / "project.json").is_file():
             raise InputError(

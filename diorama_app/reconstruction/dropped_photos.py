@@ -16,7 +16,7 @@ from diorama_app.projects.uploads import Upload, decoded
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_core.errors import DioramaError, InputError
-from diorama_core.io.contained import unpacked
+from diorama_core.io.contained import unpack
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
@@ -82,7 +82,7 @@ def build_one_room(client: Client, name: str, content: bytes, reading: Reading) 
         with tempfile.TemporaryDirectory(prefix="dropped-") as folder:
             (Path(folder) / "photos.zip").write_bytes(content)
             try:
-                with unpacked(Path(folder) / "photos.zip", MAX_BYTES) as inside:
+                with unpack(Path(folder) / "photos.zip", MAX_BYTES) as inside:
                     built = _room(inside, reading, output, progress)
             except BaseException:
                 shutil.rmtree(output, ignore_errors=True)

@@ -11,8 +11,8 @@ from jaxtyping import Bool
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_core.artefacts import Box, Inputs, LabelledBox
-from diorama_core.editing.input_corrections import given_outline, with_correction
-from diorama_core.editing.reconstructed import inserted, renamed, replaced
+from diorama_core.editing.input_corrections import find_outline, with_correction
+from diorama_core.editing.reconstructed import insert, rename, replace_object
 from diorama_core.errors import EditRefused
 from diorama_core.library.labels import understand_label
 from diorama_core.progress import Progress
@@ -30,7 +30,7 @@ def add_from_photo(client: Client, box: Box, label: str) -> None:
     new_id = edits.fresh_id(session.scene, understand_label(label).category.name)
 
     def put(scene: Scene, result: Found) -> Scene:
-        return inserted(scene, result, session.library)
+        return insert(scene, result, session.library)
 
     step = _("insert {label} from the photo").format(label=label)
     _reconstruct(client, None, _labelled(box, label), new_id, step, put, select_new=True)
@@ -44,7 +44,7 @@ def rename_class(client: Client, object_id: str, label: str) -> None:
         raise EditRefused("type a category, for example armchair")
 
     def put(scene: Scene, result: Found) -> Scene:
-        return renamed(scene, object_id, result)
+        return rename(scene, object_id, result)
 
     assert item.box_px is not None
     step = _("change {label} to {words}").format(label=item.label, words=words)
@@ -75,7 +75,7 @@ def start_outline(client: Client, object_id: str) -> MaskDraft:
     from diorama_core.perception.masks import EmbeddedMasks
 
     assert item.box_px is not None
-    mask = given_outline(inputs, item.box_px)
+    mask = find_outline(inputs, item.box_px)
     if mask is None:
         mask = EmbeddedMasks().segment_box(inputs.photo.rgb, item.box_px)[0]
     return MaskDraft(inputs.photo.rgb, item.box_px, mask)
@@ -105,7 +105,7 @@ def _reconstruct(
             session.offered,
             box,
             object_id,
-            mask=given_outline(inputs, box.box) if drawn is None else drawn,
+            mask=find_outline(inputs, box.box) if drawn is None else drawn,
             cache=None if project is None else project.stages_folder,
             progress=progress,
         )
@@ -126,7 +126,7 @@ def _reconstruct(
 
 
 def _replaced(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]:
-    return lambda scene, result: replaced(scene, object_id, result, client.session.library)
+    return lambda scene, result: replace_object(scene, object_id, result, client.session.library)
 
 
 def _labelled(box: Box, label: str) -> LabelledBox:

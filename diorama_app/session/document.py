@@ -11,7 +11,7 @@ from typing import cast
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import EditRefused
 from diorama_core.multiview.camera_changes import following
-from diorama_core.scene.history import Entry, History, moved_last, moved_next
+from diorama_core.scene.history import Entry, History, move_last, move_next
 from diorama_core.scene.types import Scene
 
 
@@ -134,7 +134,7 @@ class Document:
         if index is None:
             mine = self.history.can_undo
             raise EditRefused("there is nothing of yours to undo" if mine else "there is nothing to undo")
-        self.history = moved_last(self.history, index)
+        self.history = move_last(self.history, index)
         undone = self.history.current
         self.history = self.history.undo()
         self._changes += 1
@@ -150,7 +150,7 @@ class Document:
         if index is None:
             mine = self.history.can_redo
             raise EditRefused("there is nothing of yours to redo" if mine else "there is nothing to redo")
-        self.history = moved_next(self.history, index).redo()
+        self.history = move_next(self.history, index).redo()
         self._changes += 1
         return self.history.current
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from diorama_app.session.textures import Textures
 from diorama_core.artefacts import FurtherPhoto, Inputs, Reason
 from diorama_core.errors import ProjectError
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.project.further_photos import load_photos
 from diorama_core.project.reasons import load_reasons
 from diorama_core.project.storage import Project
@@ -59,7 +59,7 @@ def build_notes(project: Project) -> tuple[str, ...]:
 
 def shown_notes(notes: Sequence[object]) -> tuple[str, ...]:
     """Notes as they are shown: each line once and of bounded length, and not too many."""
-    return tuple(dict.fromkeys(shortened(str(note), MAX_NOTE_LENGTH) for note in notes[:MAX_NOTES]))
+    return tuple(dict.fromkeys(shorten(str(note), MAX_NOTE_LENGTH) for note in notes[:MAX_NOTES]))
 
 
 def _inputs(project: Project) -> tuple[Inputs | None, str]:

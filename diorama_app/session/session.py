@@ -35,7 +35,7 @@ from diorama_app.viewport.thumbnails import Thumbnails
 from diorama_core.artefacts import Photo, Reason
 from diorama_core.editing.clipboard import Clip
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.user_library import ProjectShapes, ShapeRecords, offered_shapes
+from diorama_core.library.user_library import ProjectShapes, ShapeRecords, offer_shapes
 from diorama_core.project.storage import Project
 
 
@@ -116,7 +116,7 @@ class EditorSession(SharedDocument):
     @property
     def offered(self) -> ShapeLibrary:
         """The library as builds and words choose from it: without people's own models unless they asked for that."""
-        return offered_shapes(self.library)
+        return offer_shapes(self.library)
 
     def changed(self, by: ConnectedClient | None = None) -> None:
         """The document changed: save and show it. Nothing that is shown can keep it from being saved."""

@@ -12,9 +12,9 @@ from diorama_app.session.project_saving import ProjectSaving
 from diorama_app.session.textures import Textures, refitted
 from diorama_app.strings import _
 from diorama_core.artefacts import FurtherPhoto, Inputs
-from diorama_core.editing.hand_placed import noted_by_hand
+from diorama_core.editing.hand_placed import mark_by_hand
 from diorama_core.errors import DioramaError, EditRefused
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.project.storage import Project
 from diorama_core.scene.history import Entry
 from diorama_core.scene.schema import check_limits
@@ -81,7 +81,7 @@ class SharedDocument(ABC):
         try:
             self.need_writable()
             scene = change(self.scene)
-            scene = noted_by_hand(self.scene, scene) if by_hand else scene
+            scene = mark_by_hand(self.scene, scene) if by_hand else scene
             check_limits(scene, self.scene)
             scene, made = refitted(self.scene, scene, self.textures)
             self.add_textures(made)
@@ -90,7 +90,7 @@ class SharedDocument(ABC):
             raise
         except ValueError as error:  # the scene's own values refuse what is no number
             self.refresh(by)
-            message = _("this is not possible: {reason}; give another value").format(reason=shortened(str(error)))
+            message = _("this is not possible: {reason}; give another value").format(reason=shorten(str(error)))
             raise EditRefused(message) from error
         if scene == self.scene and inputs is None:
             self.refresh(by)

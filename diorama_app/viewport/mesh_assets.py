@@ -12,12 +12,12 @@ from trimesh.visual.material import PBRMaterial
 from diorama_core.errors import LibraryError
 from diorama_core.geometry.planes import plane_axes, plane_uv
 from diorama_core.io.cache import LruCache
-from diorama_core.library.opening import can_open, opened_parts
-from diorama_core.library.paint import main_rgb, painted
+from diorama_core.library.opening import can_open, open_parts
+from diorama_core.library.paint import main_rgb, repaint
 from diorama_core.library.photo_materials import Pictures, with_photo_materials
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.simplify import simplified_glb
-from diorama_core.library.stretch import EVEN, Scale, stretched_parts
+from diorama_core.library.simplify import simplify_glb
+from diorama_core.library.stretch import EVEN, Scale, stretch_parts
 from diorama_core.scene.types import Finish, PhotoMaterial, Plane, SceneObject
 
 Colour = tuple[float, float, float]
@@ -79,9 +79,9 @@ class ShapeBytes:
             if unchanged:
                 data = self._library.glb(shape_id)
             else:
-                parts = stretched_parts(opened_parts(self._library, shape_id, open_share, scale), scale)
+                parts = stretch_parts(open_parts(self._library, shape_id, open_share, scale), scale)
                 data = _painted_glb(parts, colour, finish, materials, shown)
-            return data if most is None else simplified_glb(data, most)
+            return data if most is None else simplify_glb(data, most)
 
         return self._cached.get((shape_id, colour, finish, materials, scale, open_share, frozenset(shown), most), made)
 
@@ -132,7 +132,7 @@ def _painted_glb(
     materials: tuple[PhotoMaterial, ...],
     pictures: Pictures,
 ) -> bytes:
-    shown = parts if colour is None and finish is None else painted(parts, colour, finish)
+    shown = parts if colour is None and finish is None else repaint(parts, colour, finish)
     if materials:
         reduced_pictures = {name: reduced(picture, MAX_PICTURE_PX) for name, picture in pictures.items()}
         shown = with_photo_materials(shown, materials, reduced_pictures)

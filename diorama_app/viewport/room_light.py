@@ -19,7 +19,7 @@ from jaxtyping import Float
 from diorama_app.viewport.mesh_assets import ShapeBytes, plane_triangles
 from diorama_core.geometry.openings import OPENING_CATEGORIES, with_openings
 from diorama_core.geometry.sun import Daylight, daylight, sun_patches
-from diorama_core.geometry.unseen_walls import closed_room
+from diorama_core.geometry.unseen_walls import close_room
 from diorama_core.scene.light_settings import LightSettings
 from diorama_core.scene.types import Architecture, Plane, RoomLight, Scene, SceneObject
 
@@ -154,7 +154,7 @@ class RoomLightView:
             self._casters(None)
             self._show_patches((), WHITE)
             return
-        planes = closed_room(with_openings(scene)).architecture
+        planes = close_room(with_openings(scene)).architecture
         colour, strength = _split(outside.sun)
         shaded = not self._low
         intensity = SUN_INTENSITY * strength * (1.0 if shaded else UNSHADED_SUN) * settings.exposure

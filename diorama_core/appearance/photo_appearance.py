@@ -32,7 +32,7 @@ from diorama_core.library.furniture.measures import MARK
 from diorama_core.library.paint import physically_based
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.slots import Slot, slots_of
-from diorama_core.library.stretch import relative_scale, stretched_parts
+from diorama_core.library.stretch import relative_scale, stretch_parts
 from diorama_core.library.taxonomy import LAMPS, SETS
 from diorama_core.scene.types import Camera, PhotoMaterial, RoomLight, Scene, SceneObject
 from diorama_core.workers import map_threads
@@ -176,7 +176,7 @@ def _sets(scene: Scene) -> list[list[str]]:
 
 
 def _parts(library: ShapeLibrary, item: SceneObject) -> trimesh.Scene:
-    return stretched_parts(library.parts(item.shape_id), relative_scale(item.pose.scale))
+    return stretch_parts(library.parts(item.shape_id), relative_scale(item.pose.scale))
 
 
 def _seen(

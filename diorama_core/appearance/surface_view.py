@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float, Float32, Int8, Int32
 from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.geometry.vectors import dot, face_normals, facing, unit
 from diorama_core.library.photo_materials import metric_uv, with_own_corners
-from diorama_core.library.slots import Slot, placed_vertices
+from diorama_core.library.slots import Slot, place_vertices
 from diorama_core.render.raycast import PinholeView
 from diorama_core.scene.types import Camera, Pose
 
@@ -81,7 +81,7 @@ def _joined(
     vertices, faces, uv, owner, start = [], [], [], [], 0
     for index, slot in enumerate(slots):
         for name in slot.geometry:
-            points = placed_vertices(parts, name)
+            points = place_vertices(parts, name)
             vertices.append(points)
             faces.append(np.asarray(parts.geometry[name].faces) + start)
             uv.append(metric_uv(parts, slot, name))

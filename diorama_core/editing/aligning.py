@@ -73,7 +73,7 @@ def mirror(scene: Scene, ids: Sequence[str], axis: Float[np.ndarray, "3"], libra
     spans = np.array([_span(scene, i, axis) for i in chosen])
     middle = float((spans[:, 0].min() + spans[:, 1].max()) / 2)
     riding = {d for i in chosen for d in descendants(scene, i)}
-    image = {o.id: reflected(o.pose, axis, middle) for o in scene.objects if o.id in {*chosen, *riding}}
+    image = {o.id: reflect(o.pose, axis, middle) for o in scene.objects if o.id in {*chosen, *riding}}
     for i in chosen:
         scene = edits.move(scene, i, image[i])
     scene = edits.place(scene, {i: image[i] for i in riding})
@@ -82,7 +82,7 @@ def mirror(scene: Scene, ids: Sequence[str], axis: Float[np.ndarray, "3"], libra
     return replace(scene, objects=objects)
 
 
-def reflected(pose: Pose, axis: Float[np.ndarray, "3"], at: float) -> Pose:
+def reflect(pose: Pose, axis: Float[np.ndarray, "3"], at: float) -> Pose:
     """A pose whose place and heading are mirrored in the vertical plane `axis . p = at`."""
     position = pose.position + 2 * (at - float(axis @ pose.position)) * axis
     front = pose.R_world_object[:, 0]

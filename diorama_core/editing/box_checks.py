@@ -21,7 +21,7 @@ HEIGHT = 2
 """Axis of the height among a kind's sizes."""
 
 
-def merged_boxes(boxes: Sequence[LabelledBox]) -> tuple[LabelledBox, ...]:
+def merge_boxes(boxes: Sequence[LabelledBox]) -> tuple[LabelledBox, ...]:
     """The boxes, likeliest first, without those that show an object that a box before them shows."""
     kept: list[LabelledBox] = []
     for box in boxes:

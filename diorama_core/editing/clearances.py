@@ -62,7 +62,7 @@ def clearances(scene: Scene, object_id: str) -> tuple[Clearance, ...]:
     return tuple(c for c in nearest if c is not None)
 
 
-def moved_to_clearance(scene: Scene, object_id: str, side: Side, distance_m: float) -> Scene:
+def set_clearance(scene: Scene, object_id: str, side: Side, distance_m: float) -> Scene:
     """The object moved along one of its axes until that side is free by a length; what is on it goes along.
 
     Args:
@@ -99,7 +99,7 @@ def _nearest(item: SceneObject, side: Side, walls: tuple[Plane, ...], others: li
     starts = item.pose.position + ACROSS[:, None] * width * along  # rays from the middle notice what is reached into
     low, high = (float(e) for e in (item.corners_world[:, 2].min(), item.corners_world[:, 2].max()))
     facing = [w for w in walls if float(w.normal @ out) < 0]
-    spans = [_shared(low, high, w.polygon[:, 2]) for w in facing] + [_shared(low, high, o.heights) for o in others]
+    spans = [_overlap(low, high, w.polygon[:, 2]) for w in facing] + [_overlap(low, high, o.heights) for o in others]
     reached = [_to_wall(starts, out, w, span) for w, span in zip(facing, spans, strict=False)]
     reached += _to_boxes(starts, out, [o.item for o in others], spans[len(facing) :])
     if not reached:
@@ -119,7 +119,7 @@ def _nearest(item: SceneObject, side: Side, walls: tuple[Plane, ...], others: li
     return Clearance(side, distance, face, face + distance * out, name)
 
 
-def _shared(low: float, high: float, heights: Float[np.ndarray, "_"]) -> tuple[float, float]:
+def _overlap(low: float, high: float, heights: Float[np.ndarray, "_"]) -> tuple[float, float]:
     """The heights that two things share."""
     return max(low, float(heights.min())), min(high, float(heights.max()))
 

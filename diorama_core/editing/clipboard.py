@@ -37,7 +37,7 @@ class Clip:
         return np.mean([o.pose.position for o in self.objects], axis=0)
 
 
-def copied(scene: Scene, ids: Iterable[str]) -> Clip:
+def clip_of(scene: Scene, ids: Iterable[str]) -> Clip:
     """Objects and everything they support, in scene order."""
     chosen = {i for one in ids for i in (one, *descendants(scene, one))}
     return Clip(
@@ -45,7 +45,7 @@ def copied(scene: Scene, ids: Iterable[str]) -> Clip:
     )
 
 
-def pasted_at(scene: Scene, clip: Clip, target_world: Float[np.ndarray, "3"]) -> tuple[Scene, tuple[str, ...]]:
+def paste_at(scene: Scene, clip: Clip, target_world: Float[np.ndarray, "3"]) -> tuple[Scene, tuple[str, ...]]:
     """The scene with copies on the floor, around the place nearest to a point from which all of them are inside.
 
     Returns:
@@ -62,15 +62,15 @@ def pasted_at(scene: Scene, clip: Clip, target_world: Float[np.ndarray, "3"]) ->
         place = np.where(first <= last, np.clip(place, first, last), (first + last) / 2)
     middle = (low + high)[:2] / 2
     inner = {s.child: s for s in clip.supports if s.parent in {o.id for o in clip.objects}}
-    objects = tuple(_moved(o, clip, inner, np.append(place - middle, 0.0), level) for o in clip.objects)
-    scene, heads = pasted(scene, Clip(objects, tuple(inner.values())), np.zeros(3))
+    objects = tuple(_move(o, clip, inner, np.append(place - middle, 0.0), level) for o in clip.objects)
+    scene, heads = paste_clip(scene, Clip(objects, tuple(inner.values())), np.zeros(3))
     if floor is not None:
         for object_id in heads:
             scene = edits.attach(scene, Support(object_id, floor.id))
     return scene, heads
 
 
-def _moved(
+def _move(
     item: SceneObject, clip: Clip, inner: dict[str, Support], shift: Float[np.ndarray, "3"], level: float
 ) -> SceneObject:
     """An object moved across, and down to the floor with whatever of the clip it stands on."""
@@ -144,7 +144,7 @@ def _extent_below(
     return corners[:, :2].min(axis=0), corners[:, :2].max(axis=0)
 
 
-def pasted(scene: Scene, clip: Clip, offset_world: object = BESIDE_M) -> tuple[Scene, tuple[str, ...]]:
+def paste_clip(scene: Scene, clip: Clip, offset_world: object = BESIDE_M) -> tuple[Scene, tuple[str, ...]]:
     """The scene with copies, shifted, under ids of their own.
 
     What stood on something outside the clip stands on the same supporter where that exists, else on the floor.

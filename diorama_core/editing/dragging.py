@@ -197,7 +197,7 @@ class Slide:
         point = hit.point + lift * hit.place.surface.normal
         position = point + offset
         outward = hit.place.surface
-        position = _clamped_to(outward, position, item)
+        position = _clamp_to(outward, position, item)
         pose = Pose(turn @ item.pose.R_world_object, position, item.pose.scale)
         wall = self.scene.plane(hit.place.parent) if self.scene.has_plane(hit.place.parent) else None
         return (pose if wall is None else clamp_to_wall(replace(item, pose=pose), wall)), hit.place
@@ -221,7 +221,7 @@ class Slide:
         return to_wall(replace(self.item, pose=snapped), walls)
 
 
-def snapped_pose(start: Pose, pose: Pose) -> Pose:
+def snap_pose(start: Pose, pose: Pose) -> Pose:
     """A gizmo's pose on the grid: places to 5 cm, headings to 15 degrees, each only where the hand changed it."""
     if not np.allclose(start.position, pose.position, atol=1e-6):
         moved = np.abs(start.position - pose.position) > 1e-6
@@ -245,7 +245,7 @@ def _turn(before: np.ndarray, after: np.ndarray) -> np.ndarray:
     return yaw_rotation(float(np.arctan2(after[1], after[0]) - np.arctan2(before[1], before[0])))
 
 
-def _clamped_to(surface: RestingSurface, position: np.ndarray, item: SceneObject) -> np.ndarray:
+def _clamp_to(surface: RestingSurface, position: np.ndarray, item: SceneObject) -> np.ndarray:
     """The centre moved so that the object's middle stays over the surface."""
     foot = position - (float(surface.normal @ position) - surface.level) * surface.normal
     return position + nearest_point(surface, foot) - foot

@@ -108,20 +108,18 @@ def free_space(scene: Scene) -> FreeSpace:
     origin, extent = flat.min(axis=0), np.ptp(flat, axis=0)
     cell = max(CELL_M, float(extent.max()) / MAX_CELLS)
     width, height = (max(1, int(e / cell + 1e-6)) for e in extent)
-    free = _filled((flat - origin) / cell, height, width)
+    free = _fill((flat - origin) / cell, height, width)
     for item in scene.objects:
         corners = item.corners_world
         low, high = float(corners[:, 2].min()) - level, float(corners[:, 2].max()) - level
         if item.hidden or high < FLAT_M or low > FLAT_M:
             continue
-        free &= ~_filled(
-            (cv2.convexHull(corners[:, :2].astype(np.float32))[:, 0] @ turn - origin) / cell, height, width
-        )
+        free &= ~_fill((cv2.convexHull(corners[:, :2].astype(np.float32))[:, 0] @ turn - origin) / cell, height, width)
     T_world_grid = np.column_stack([turn, turn @ origin])
     return FreeSpace(free, cell, max(ceilings) - level if ceilings else np.inf, walls, T_world_grid)
 
 
-def _filled(corners: Float[np.ndarray, "n 2"], height: int, width: int) -> Bool[np.ndarray, "{height} {width}"]:
+def _fill(corners: Float[np.ndarray, "n 2"], height: int, width: int) -> Bool[np.ndarray, "{height} {width}"]:
     """Cells whose middles are in a polygon, given in cells."""
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
     return is_in_polygon(np.stack([x, y], axis=-1), np.asarray(corners, dtype=np.float64))

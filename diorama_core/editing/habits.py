@@ -27,14 +27,14 @@ def host_cost(item: SceneObject, host: SceneObject) -> float:
     return 0.6 + (0.4 if host.size_m[2] > 1.3 else 0.0)
 
 
-def pushed_under(item: SceneObject) -> tuple[str, ...]:
+def tuck_hosts(item: SceneObject) -> tuple[str, ...]:
     """Categories under which an object is pushed."""
     return category(item.category).tucked_under or ()
 
 
 def belongs_before(item: SceneObject, host: SceneObject, relations: Sequence[Relation]) -> bool:
     """Whether an object is meant to be on the floor before another: its seat, its table, or as wished."""
-    if broad(host.category) in pushed_under(item):
+    if broad(host.category) in tuck_hosts(item):
         return True
     before = [targets for kind, targets in category(item.category).usual_relations or () if kind == "in front of"]
     if any(broad(host.category) in targets for targets in before) or item.category in having("rug"):

@@ -15,7 +15,7 @@ AWAY_M = 0.05
 """An object whose gap to a wall grew by more than this no longer stands against it."""
 
 
-def noted_by_hand(before: Scene, after: Scene) -> Scene:
+def mark_by_hand(before: Scene, after: Scene) -> Scene:
     """A scene as a person left it: what the edit itself placed, turned or sized is noted as such.
 
     What only rides on its supporter is not. Objects that were taken away from a wall no longer stand against it, unless
@@ -33,7 +33,7 @@ def noted_by_hand(before: Scene, after: Scene) -> Scene:
     return replace(after, objects=objects, supports=supports)
 
 
-def left_to_people(scene: Scene) -> frozenset[str]:
+def fixed_ids(scene: Scene) -> frozenset[str]:
     """Ids of objects that no automatic step moves: what people placed, and what carries it."""
     placed = [o.id for o in scene.objects if o.by_hand]
     carrying = {i for object_id in placed for i in ancestors(scene, object_id) if scene.has_object(i)}

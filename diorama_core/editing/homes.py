@@ -43,7 +43,7 @@ class JoinedHome:
     """What everything of the joined scene is called in the home, its door too, by what it was."""
 
 
-def joined(
+def join(
     home: Scene,
     other: Scene,
     door: str,
@@ -72,12 +72,12 @@ def joined(
         raise EditRefused(f"a wall cannot be {wall_m:g} m thick; give 0 to 1 m")
     home, other = _as_home(home, names[0]), _as_home(other, names[1])
     home, other = as_one_door(home, other, door, other_door)
-    T = placed_at_door(home, other, door, other_door, wall_m=wall_m)
+    T = place_at_door(home, other, door, other_door, wall_m=wall_m)
     wall, there = _wall_of_door(home, door), _wall_of_door(other, other_door)
     storeys = _storey(home, door) - _storey(other, other_door)
     moved = moved_to_room(edits.remove(other, [other_door]), T)
     called = _new_names(home, moved)
-    planes = tuple(_called(p, called, wall_m if p.id == there.id else None) for p in moved.architecture.planes)
+    planes = tuple(_rename(p, called, wall_m if p.id == there.id else None) for p in moved.architecture.planes)
     textures = called.textures
     objects = tuple(
         replace(
@@ -102,7 +102,7 @@ def joined(
         architecture=Architecture((*thick, *planes)),
         objects=(*home.objects, *objects),
         supports=(*home.supports, *supports),
-        rooms=_counted_from_lowest((*home.rooms, *rooms)),
+        rooms=_renumber((*home.rooms, *rooms)),
     )
     return JoinedHome(scene, textures, {**called.ids, other_door: door})
 
@@ -111,10 +111,10 @@ def as_one_door(home: Scene, other: Scene, door: str, other_door: str) -> tuple[
     """Both scenes with the door where their photos show its edges, as wide as the photo that shows more of it says.
 
     Args:
-        home, other, door, other_door: as of `joined`.
+        home, other, door, other_door: as of `join`.
     """
     sides = ((home, door), (other, other_door))
-    edges = [_seen_edges(scene, name, _wall_of_door(scene, name)) for scene, name in sides]
+    edges = [_box_edges(scene, name, _wall_of_door(scene, name)) for scene, name in sides]
     # What hides a door, and the border of the picture, make it narrower than it is.
     width = max(right - left for left, right, _ in edges)
     if not np.isfinite(width):
@@ -123,13 +123,13 @@ def as_one_door(home: Scene, other: Scene, door: str, other_door: str) -> tuple[
     return first, second
 
 
-def placed_at_door(
+def place_at_door(
     home: Scene, other: Scene, door: str, other_door: str, *, wall_m: float = USUAL_WALL_M
 ) -> Float[np.ndarray, "4 4"]:
     """`T_home_other` that makes two doors one: back to back in a wall, feet at one height.
 
     Args:
-        home, other, door, other_door, wall_m: as of `joined`.
+        home, other, door, other_door, wall_m: as of `join`.
     """
     wall, there = _wall_of_door(home, door), _wall_of_door(other, other_door)
     yaw = np.arctan2(*-wall.normal[[1, 0]]) - np.arctan2(*there.normal[[1, 0]])
@@ -150,7 +150,7 @@ def join_project(
     wall_m: float = USUAL_WALL_M,
     name: str | None = None,
 ) -> tuple[JoinedHome, Mapping[str, UInt8[np.ndarray, "_ _ 3"]]]:
-    """A project's scene with another project's beside it (`joined`), and the pictures that came with it.
+    """A project's scene with another project's beside it (`join`), and the pictures that came with it.
 
     Shapes that the other project brought itself are copied into the project.
 
@@ -164,7 +164,7 @@ def join_project(
         name: of the scene where it is one room; the project's where None.
 
     Raises:
-        EditRefused: as `joined`, or the two use different libraries.
+        EditRefused: as `join`, or the two use different libraries.
         ProjectError: a project cannot be read or written.
     """
     if project.shared_library_name != other.shared_library_name:
@@ -173,7 +173,7 @@ def join_project(
             "build both with one library"
         )
     added = other.load_scene()
-    made = joined(scene, added, door, other_door, names=(name or project.name, other.name), wall_m=wall_m)
+    made = join(scene, added, door, other_door, names=(name or project.name, other.name), wall_m=wall_m)
     if other.shapes_folder.is_dir():
         project.take_shapes(other)
     pictures = other.textures(added)  # those of its door went with it
@@ -274,7 +274,7 @@ def _pictures(scene: Scene) -> set[str]:
     return {name for name in named if name is not None}
 
 
-def _called(plane: Plane, names: _Names, wall_m: float | None) -> Plane:
+def _rename(plane: Plane, names: _Names, wall_m: float | None) -> Plane:
     pictures = {t: None if t is None else names.textures[t] for t in (plane.texture, plane.photo_texture)}
     return replace(
         plane,
@@ -333,7 +333,7 @@ def _with_edges(scene: Scene, door: str, left: float, right: float, cut: tuple[b
     return replace(scene, objects=tuple(replace(o, pose=pose) if o is item else o for o in scene.objects))
 
 
-def _seen_edges(scene: Scene, door: str, wall: Plane) -> tuple[float, float, tuple[bool, bool]]:
+def _box_edges(scene: Scene, door: str, wall: Plane) -> tuple[float, float, tuple[bool, bool]]:
     """Where a door's left and right edge are along its wall (m) by its box, and whether the picture cuts them off.
 
     Infinitely wide where there is no photo, or somebody placed the door since.
@@ -370,6 +370,6 @@ def _storey(scene: Scene, door: str) -> int:
     return next((r.storey for r in scene.rooms if r.id == room), 0)
 
 
-def _counted_from_lowest(rooms: tuple[HomeRoom, ...]) -> tuple[HomeRoom, ...]:
+def _renumber(rooms: tuple[HomeRoom, ...]) -> tuple[HomeRoom, ...]:
     lowest = min(r.storey for r in rooms)
     return tuple(replace(r, storey=r.storey - lowest) for r in rooms)

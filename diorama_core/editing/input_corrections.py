@@ -79,7 +79,7 @@ def same_object(boxes: Sequence[LabelledBox], box: Box) -> int | None:
     return best if overlaps[best] >= SAME_OBJECT_IOU else None
 
 
-def labelled_box(box: Box, label: str) -> LabelledBox:
+def label_box(box: Box, label: str) -> LabelledBox:
     """A box with a name as it was typed, and the category that it means."""
     return LabelledBox(box, understand_label(label).category.name, label)
 
@@ -102,7 +102,7 @@ def boxes_json(boxes: Sequence[LabelledBox], photo: Photo) -> bytes:
     return json.dumps({"image": size, "boxes": rows}).encode()
 
 
-def given_outline(inputs: Inputs, box: Box) -> Bool[np.ndarray, "h w"] | None:
+def find_outline(inputs: Inputs, box: Box) -> Bool[np.ndarray, "h w"] | None:
     """The outline that was given for a box; None where it is to be found."""
     known = [i for i, b in inputs.instance_boxes if b.box == box]
     if inputs.instances is None or not known:

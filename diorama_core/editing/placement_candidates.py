@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float
 
 from diorama_core.editing.collisions import WALKED_ON_M
 from diorama_core.editing.footprints import footprint_of, gaps, lie_within, overlapping
-from diorama_core.editing.habits import carries, host_cost, pushed_under, stands
+from diorama_core.editing.habits import carries, host_cost, stands, tuck_hosts
 from diorama_core.editing.placing import places_of
 from diorama_core.editing.relations import Relation, Stances
 from diorama_core.editing.room_frame import RoomFrame
@@ -88,7 +88,7 @@ def _floor_candidates(scene: Scene, item: SceneObject, relations: Sequence[Relat
     count = len(stances.places)
     quads = stances.quads
     usable = lie_within(quads, frame.outline)
-    usable &= ~_blocked(scene, item, quads, relations)
+    usable &= ~_is_blocked(scene, item, quads, relations)
     support = None if frame.floor_id is None else Support(item.id, frame.floor_id)
     base = np.full(count, frame.floor_m)
     supports: list[Support | None] = [support] * count
@@ -164,7 +164,7 @@ def _places_around(target: SceneObject, item: SceneObject) -> list[tuple[Float[n
     return candidates
 
 
-def _blocked(
+def _is_blocked(
     scene: Scene, item: SceneObject, quads: Float[np.ndarray, "n 4 2"], relations: Sequence[Relation]
 ) -> Bool[np.ndarray, "n"]:
     """Stances on the floor that share their place with furniture, seats pushed under tables apart."""
@@ -172,12 +172,12 @@ def _blocked(
     if item.size_m[2] < WALKED_ON_M:
         return hit
     under = {t for r in relations if r.kind == "under" for t in r.targets}
-    tucked = pushed_under(item)
+    tucked = tuck_hosts(item)
     for other in scene.objects:
         low, high = float(other.corners_world[:, 2].min()), float(other.corners_world[:, 2].max())
         if other.size_m[2] < WALKED_ON_M or low > item.size_m[2] + 0.01 or high < 0.02 or other.hidden:
             continue
-        if other.id in under or broad(other.category) in tucked or item.category in pushed_under(other):
+        if other.id in under or broad(other.category) in tucked or item.category in tuck_hosts(other):
             continue
         hit |= overlapping(quads, footprint_of(other), 0.004)
     return hit

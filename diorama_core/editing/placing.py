@@ -127,7 +127,7 @@ def fits(place: SupportTarget, size_m: Float[np.ndarray, "3"], base: Float[np.nd
     return bool(over >= FITS_SHARE)
 
 
-def seated(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
+def seat(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
     """The object on the surface of its supporter that is nearest to where it is, its load along with it."""
     edge = scene.support_of(object_id)
     if edge is None:
@@ -189,10 +189,10 @@ def _hung(item: SceneObject, surface: RestingSurface) -> Pose:
 
 def against_wall(scene: Scene, object_id: str, wall: Plane) -> Scene:
     """The object turned with its back to a wall and pushed against it, its load along with it."""
-    return edits.move(scene, object_id, backed(scene.object(object_id), plane_surface(wall)))
+    return edits.move(scene, object_id, wall_pose(scene.object(object_id), plane_surface(wall)))
 
 
-def backed(item: SceneObject, wall: RestingSurface) -> Pose:
+def wall_pose(item: SceneObject, wall: RestingSurface) -> Pose:
     """The pose with its back flat against a wall, at the same height."""
     n = wall.normal
     R = yaw_rotation(float(np.arctan2(n[1], n[0])))
@@ -210,7 +210,7 @@ def to_wall(item: SceneObject, walls: Iterable[RestingSurface]) -> Pose:
             continue
         gap = float(n @ item.pose.position) - wall.level - item.size_m[0] / 2
         if abs(gap) <= WALL_MAGNET_M and overhang_m(wall, item.pose.position) <= 0.0:
-            return backed(item, wall)
+            return wall_pose(item, wall)
     return item.pose
 
 

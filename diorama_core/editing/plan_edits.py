@@ -146,14 +146,14 @@ def room_of_outline(outline: Float[np.ndarray, "n 2"], height_m: float, floor_m:
     up = np.array([0.0, 0.0, height_m])
     sides = list(zip(floor, np.roll(floor, -1, axis=0), strict=True))
     walls = (
-        _finished(f"wall_{n}", "wall", np.stack([b, a, a + up, b + up]), WALLS)
+        _plane(f"wall_{n}", "wall", np.stack([b, a, a + up, b + up]), WALLS)
         for n, (a, b) in enumerate((sides[0], *sides[:0:-1]), start=1)
     )
     ceiling = Plane("ceiling", "ceiling", (floor + up)[::-1], colour=CEILING_COLOUR)
-    return Architecture((_finished("floor", "floor", floor, FLOOR), *walls, ceiling))
+    return Architecture((_plane("floor", "floor", floor, FLOOR), *walls, ceiling))
 
 
-def _finished(plane_id: str, role: PlaneRole, polygon: np.ndarray, finish: SurfaceFinish) -> Plane:
+def _plane(plane_id: str, role: PlaneRole, polygon: np.ndarray, finish: SurfaceFinish) -> Plane:
     return Plane(plane_id, role, polygon, colour=finish.colour, finish=finish, photo_colour=Plane.colour)
 
 
@@ -193,7 +193,7 @@ def split_wall(scene: Scene, wall_id: str, at: Point) -> Scene:
     planes = tuple(part for plane in scene.architecture.planes for part in parts(plane))
     beyond = {o.id for o in scene.objects if float(o.pose.position @ direction) > level}
     names = {wall_id: right.id}
-    supports = tuple(_renamed(s, names) if s.child in beyond else s for s in scene.supports)
+    supports = tuple(_rename(s, names) if s.child in beyond else s for s in scene.supports)
     return replace(scene, architecture=replace(scene.architecture, planes=planes), supports=supports)
 
 
@@ -208,7 +208,7 @@ def draw_room(scene: Scene, outline: Float[np.ndarray, "n 2"]) -> Scene:
     outline = _sound_outline(np.asarray(outline, dtype=np.float64))
     height = ceiling_height(scene) or USUAL_HEIGHT_M
     room = room_of_outline(outline, float(np.clip(height, LOWEST_M, HIGHEST_M)), floor_height(scene))
-    supports = tuple(s for s in (_held(scene, s, room) for s in scene.supports) if s is not None)
+    supports = tuple(s for s in (_support(scene, s, room) for s in scene.supports) if s is not None)
     return replace(scene, architecture=room, supports=supports)
 
 
@@ -227,7 +227,7 @@ def _sound_outline(outline: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n 2"
     return outline if room.exterior.is_ccw else outline[::-1]
 
 
-def _held(scene: Scene, edge: Support, room: Architecture) -> Support | None:
+def _support(scene: Scene, edge: Support, room: Architecture) -> Support | None:
     """The edge with planes of the new room; None where the room has none of the kind that held it."""
     item = scene.object(edge.child)
     walls = {p.id for p in scene.architecture.by_role("wall")}
@@ -257,6 +257,6 @@ def _with_corners(polygon: Float[np.ndarray, "n 3"], points: Iterable[np.ndarray
     return polygon
 
 
-def _renamed(edge: Support, names: dict[str, str]) -> Support:
+def _rename(edge: Support, names: dict[str, str]) -> Support:
     adheres = tuple(names.get(i, i) for i in edge.adheres_to)
     return replace(edge, parent=names.get(edge.parent, edge.parent), adheres_to=adheres)

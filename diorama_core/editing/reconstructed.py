@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from diorama_core.editing.footprints import footprint_of
-from diorama_core.editing.placing import seated
+from diorama_core.editing.placing import seat
 from diorama_core.editing.positioning import Positioner
 from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.library.record import ShapeLibrary
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from diorama_core.pipeline.reconstruct_object import Found  # the whole pipeline; editing does without it
 
 
-def inserted(scene: Scene, reconstruction: Found, library: ShapeLibrary) -> Scene:
+def insert(scene: Scene, reconstruction: Found, library: ShapeLibrary) -> Scene:
     """The scene with the found object as a new one, resting on its supporter.
 
     One that would go through another object, below the floor or out of the room stands on what the photo shows it on,
@@ -34,7 +34,7 @@ def inserted(scene: Scene, reconstruction: Found, library: ShapeLibrary) -> Scen
     edge = None if reconstruction.support is None else replace(reconstruction.support, child=item.id)
     if edge is not None and not (scene.has_object(edge.parent) or scene.has_plane(edge.parent)):
         edge = None
-    return _clear(seated(edits.insert(scene, item, edge), library, item.id), item.id, library)
+    return _clear(seat(edits.insert(scene, item, edge), library, item.id), item.id, library)
 
 
 def _clear(scene: Scene, object_id: str, library: ShapeLibrary) -> Scene:
@@ -46,7 +46,7 @@ def _clear(scene: Scene, object_id: str, library: ShapeLibrary) -> Scene:
         return scene
     carriers = [o.id for o in scene.objects if o.id != object_id] if outside else []
     for carrier in dict.fromkeys([*met, *carriers]):
-        on_it = moved_onto(scene, object_id, carrier, library)
+        on_it = move_onto(scene, object_id, carrier, library)
         if on_it is not None and not positioner.collisions.pairs(on_it, [object_id]):
             return on_it
     spot = None if outside else positioner.nearby(scene, object_id)
@@ -66,7 +66,7 @@ def _is_in_room(positioner: Positioner, scene: Scene, object_id: str) -> bool:
     return above and positioner.is_inside(scene, object_id)
 
 
-def moved_onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibrary) -> Scene | None:
+def move_onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibrary) -> Scene | None:
     """An object where the photo shows its foot on top of another one, as large as it is seen; None where it does not.
 
     What seems to stand on the floor behind a sideboard looks like something smaller that stands nearer, on its top.
@@ -93,10 +93,10 @@ def moved_onto(scene: Scene, object_id: str, carrier_id: str, library: ShapeLibr
     position = place + np.array([0.0, 0.0, share * item.size_m[2] / 2])
     pose = replace(item.pose, position=position, scale=share * item.pose.scale)
     moved = edits.attach(edits.move(scene, object_id, pose), Support(object_id, carrier_id))
-    return seated(moved, library, object_id)
+    return seat(moved, library, object_id)
 
 
-def replaced(scene: Scene, object_id: str, reconstruction: Found, library: ShapeLibrary) -> Scene:
+def replace_object(scene: Scene, object_id: str, reconstruction: Found, library: ShapeLibrary) -> Scene:
     """The scene with a reconstructed object; unchanged where the correction changes nothing.
 
     Args:
@@ -108,20 +108,20 @@ def replaced(scene: Scene, object_id: str, reconstruction: Found, library: Shape
     if reconstruction.as_built:
         return scene
     changed = edits.swap(scene, object_id, reconstruction.item.candidates[0])
-    return seated(_described(changed, object_id, reconstruction, colour=reconstruction.item.colour), library, object_id)
+    return seat(_describe(changed, object_id, reconstruction, colour=reconstruction.item.colour), library, object_id)
 
 
-def renamed(scene: Scene, object_id: str, reconstruction: Found) -> Scene:
+def rename(scene: Scene, object_id: str, reconstruction: Found) -> Scene:
     """The scene with an object of the found kind, where and in the colour that it was."""
     colour = scene.object(object_id).colour
     swapped = edits.swap(scene, object_id, reconstruction.item.candidates[0], keep_pose=True)
-    return _described(swapped, object_id, reconstruction, colour=colour)
+    return _describe(swapped, object_id, reconstruction, colour=colour)
 
 
-def _described(
+def _describe(
     scene: Scene, object_id: str, reconstruction: Found, *, colour: tuple[float, float, float] | None
 ) -> Scene:
-    def described(item: SceneObject) -> SceneObject:
+    def describe(item: SceneObject) -> SceneObject:
         new = reconstruction.item
         return replace(
             item,
@@ -134,4 +134,4 @@ def _described(
             photo_materials=new.photo_materials,
         )
 
-    return replace(scene, objects=tuple(described(o) if o.id == object_id else o for o in scene.objects))
+    return replace(scene, objects=tuple(describe(o) if o.id == object_id else o for o in scene.objects))

@@ -278,7 +278,7 @@ def _opposite(r: _Relative) -> Float[np.ndarray, "n"]:
     )
 
 
-def _aligned(r: _Relative) -> Float[np.ndarray, "n"]:
+def _alignment(r: _Relative) -> Float[np.ndarray, "n"]:
     square = np.abs(np.sin(2.0 * (r.stances.yaws_rad - r.target.pose.yaw_rad)))
     offsets = np.abs(r.local)
     edges = np.abs(offsets - np.abs(r.half - r.stances.size_m[:2] / 2))
@@ -289,7 +289,7 @@ _COSTS: dict[RelationKind, Callable[[_Relative], Float[np.ndarray, "n"]]] = {
     "on": _cost_over, "under": _cost_over, "above": _cost_over, "beside": _cost_beside, "near": _cost_near,
     "around": _cost_around, "in front of": _cost_before_or_behind, "behind": _cost_before_or_behind,
     "left of": _left_or_right, "right of": _left_or_right, "facing": _facing, "opposite": _opposite,
-    "aligned with": _aligned,
+    "aligned with": _alignment,
 }  # fmt: skip
 
 

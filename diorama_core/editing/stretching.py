@@ -48,7 +48,7 @@ def handle_place(item: SceneObject, handle: Handle, margin_m: float) -> Float[np
     return along * (item.size_m / 2 + margin_m)
 
 
-def stretched(scene: Scene, object_id: str, handle: Handle, by_m: float, *, snap: bool) -> Scene:
+def stretch(scene: Scene, object_id: str, handle: Handle, by_m: float, *, snap: bool) -> Scene:
     """The scene with an object's handle pulled outward by a length.
 
     The opposite face stays where it is, for the corner the middle of the underside. What stands on the object rises
@@ -65,7 +65,7 @@ def stretched(scene: Scene, object_id: str, handle: Handle, by_m: float, *, snap
         EditRefused: the object is locked, or would be larger than a scene allows.
     """
     item = scene.object(object_id)
-    size = _pulled(item.size_m, handle, by_m, snap=snap)
+    size = _pull(item.size_m, handle, by_m, snap=snap)
     grown, R = size - item.size_m, item.pose.R_world_object
     shift = R[:, 2] * grown[2] / 2 if handle.axis is None else R @ (np.asarray(handle.along) * grown) / 2
     pose = Pose(R, item.pose.position + shift, size / np.asarray(item.shape_size_m))
@@ -74,7 +74,7 @@ def stretched(scene: Scene, object_id: str, handle: Handle, by_m: float, *, snap
     return edits.place(edits.move(scene, object_id, pose), riding)
 
 
-def pulled_m(
+def pull_m(
     item: SceneObject,
     handle: Handle,
     grabbed: Float[np.ndarray, "3"],
@@ -101,13 +101,13 @@ def pulled_m(
     return float((slant * (d @ between) - outward @ between) / (1.0 - slant * slant))
 
 
-def changed_poses(before: Scene, after: Scene) -> Mapping[str, Pose]:
+def new_poses(before: Scene, after: Scene) -> Mapping[str, Pose]:
     """Poses that differ."""
     start = {o.id: o for o in before.objects}
     return {o.id: o.pose for o in after.objects if o is not start.get(o.id)}
 
 
-def _pulled(size_m: np.ndarray, handle: Handle, by_m: float, *, snap: bool) -> np.ndarray:
+def _pull(size_m: np.ndarray, handle: Handle, by_m: float, *, snap: bool) -> np.ndarray:
     axis = handle.axis
     if axis is None:
         half = np.linalg.norm(size_m) / 2

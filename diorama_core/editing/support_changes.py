@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.editing.footprints import footprint_of
-from diorama_core.editing.placing import seated
+from diorama_core.editing.placing import seat
 from diorama_core.editing.positioning import Positioner
 from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.geometry.rooms import rooms_of_objects
@@ -36,7 +36,7 @@ def without_objects(scene: Scene, library: ShapeLibrary, object_ids: Iterable[st
     loads = tuple(s.child for s in scene.supports if s.parent in gone and s.child not in gone)
     positioner = Positioner(library)
     for load in loads:
-        after = seated(after, library, load)
+        after = seat(after, library, load)
         removed = (load, *after.children_of(load))
         spot = positioner.nearby(after, load) if positioner.collisions.pairs(after, removed) else None
         after = after if spot is None else edits.move(after, load, spot.pose)
@@ -47,7 +47,7 @@ MOVED_M, TOUCH_M = 0.01, 0.05
 """What moved by less is held as before; so near to a top something lies on it."""
 
 
-def held_again(start: Scene, final: Scene) -> Scene:
+def reattach(start: Scene, final: Scene) -> Scene:
     """A scene in which what fell off its supporter is held by what it lies on now: another object, or else the floor.
 
     Args:

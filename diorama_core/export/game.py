@@ -25,7 +25,7 @@ from diorama_core.export.gltf_document import GltfDocument
 from diorama_core.export.lights import MainLight
 from diorama_core.export.palette import GameMaterials
 from diorama_core.export.unwrapping import unwrap
-from diorama_core.library.simplify import LARGEST_ERRORS, simplified_triangles
+from diorama_core.library.simplify import LARGEST_ERRORS, simplify
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Material, Surface
 
@@ -256,7 +256,7 @@ def collider_name(name: str, number: int, engine: str) -> str:
 
 def _lighter(surface: Surface, share: float, errors: tuple[float, ...]) -> Surface:
     triangles = np.ascontiguousarray(surface.faces.reshape(-1), dtype=np.uint32)
-    fewer = simplified_triangles(triangles, surface.vertices, share, errors, MAX_SHORTER)
+    fewer = simplify(triangles, surface.vertices, share, errors, MAX_SHORTER)
     used, faces = np.unique(fewer, return_inverse=True)
     uv, colours = surface.uv, surface.colours
     return replace(

@@ -99,7 +99,7 @@ def convex_parts(mesh: trimesh.Trimesh) -> tuple[ConvexPart, ...]:
     small = SMALL_SHARE * float(np.prod(np.ptp(vertices, axis=0)))
     for component in _components(vertices, faces):
         clouds.extend(_split(vertices[component], small, 0))
-    clouds = _merge(_gathered([_hull_points(c) for c in clouds]))
+    clouds = _merge(_gather([_hull_points(c) for c in clouds]))
     clouds = _drop_contained(sorted(clouds, key=_volume, reverse=True))
     low, high = float(vertices[:, 2].min()), float(vertices[:, 2].max())
     return tuple(_level(simplest_part(c), c, low, high) for c in clouds)
@@ -125,18 +125,18 @@ def simplest_part(points: Float[np.ndarray, "n 3"]) -> ConvexPart:
     low, high = points.min(axis=0), points.max(axis=0)
     volume = _volume(points)
     if volume < 1e-12 or (high - low).min() < THINNEST_M or volume >= TIGHT * float(np.prod(high - low)):
-        return box_part(*_padded(low, high))
+        return box_part(*_pad(low, high))
     for axis in (2, 0, 1):
         prism = _prism_about(points, axis, volume)
         if prism is not None and volume >= TIGHT * _volume(np.asarray(prism.vertices)):
             return prism
     to_box, extents = _oriented_box(points)
     if volume >= TIGHT * float(np.prod(extents)):
-        return _turned_box(to_box, extents)
+        return _turn_box(to_box, extents)
     return hull_part(points) if len(_hull_points(points)) <= MAX_VERTICES else _polytope(points)
 
 
-def _padded(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _pad(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     pad = np.maximum(0.5 * (THINNEST_M - (high - low)), 0.0)
     return low - pad, high + pad
 
@@ -263,7 +263,7 @@ def _cut(triangles: np.ndarray, axis: int, at: float, sign: float) -> Float[np.n
     return np.asarray(vertices)[np.asarray(faces)]
 
 
-def _gathered(clouds: list[np.ndarray]) -> list[np.ndarray]:
+def _gather(clouds: list[np.ndarray]) -> list[np.ndarray]:
     """At most `MAX_PIECES` clouds: many small ones (leaves, slats) are joined with their neighbours."""
     if len(clouds) <= MAX_PIECES:
         return clouds
@@ -275,7 +275,7 @@ def _gathered(clouds: list[np.ndarray]) -> list[np.ndarray]:
 def _merge(clouds: list[np.ndarray]) -> list[np.ndarray]:
     """Join parts while the union stays nearly convex; beyond `MAX_PARTS`, those that add least empty space."""
     parts = {k: _Cloud.of(c) for k, c in enumerate(clouds)}
-    added = {pair: _added(parts[pair[0]], parts[pair[1]]) for pair in itertools.combinations(parts, 2)}
+    added = {pair: _empty_volume(parts[pair[0]], parts[pair[1]]) for pair in itertools.combinations(parts, 2)}
     while added:
         pair = min(added, key=added.__getitem__)
         filled = parts[pair[0]].volume + parts[pair[1]].volume
@@ -287,7 +287,7 @@ def _merge(clouds: list[np.ndarray]) -> list[np.ndarray]:
         added = {p: v for p, v in added.items() if not set(p) & set(pair)}
         new = max([*parts, *pair]) + 1
         parts[new] = _Cloud.of(joined)
-        added.update({(k, new): _added(parts[k], parts[new]) for k in parts if k != new})
+        added.update({(k, new): _empty_volume(parts[k], parts[new]) for k in parts if k != new})
     return [cloud.points for cloud in parts.values()]
 
 
@@ -306,7 +306,7 @@ class _Cloud:
         return cls(points, _volume(points), tuple(points.min(axis=0).tolist()), tuple(points.max(axis=0).tolist()))
 
 
-def _added(a: _Cloud, b: _Cloud) -> float:
+def _empty_volume(a: _Cloud, b: _Cloud) -> float:
     """Empty volume that the common hull of two parts would enclose, m3; estimated from boxes for distant parts."""
     apart = max(max(p - q, r - s) for p, q, r, s in zip(a.lower, b.upper, b.lower, a.upper, strict=True))
     if apart > 0.01:
@@ -403,7 +403,7 @@ def _oriented_box(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return T, np.ptp(local, axis=0)
 
 
-def _turned_box(to_box: np.ndarray, extents: np.ndarray) -> ConvexPart:
+def _turn_box(to_box: np.ndarray, extents: np.ndarray) -> ConvexPart:
     local = box_part(-extents / 2, extents / 2)
     R, t = np.linalg.inv(to_box)[:3, :3], np.linalg.inv(to_box)[:3, 3]
     return ConvexPart(local.vertices @ R.T + t, R.T, R.T)

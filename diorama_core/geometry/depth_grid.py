@@ -47,7 +47,7 @@ def smooth_normals_camera(
     return np.where(sure[..., None], mean / np.maximum(length, 1e-9)[..., None], 0.0)
 
 
-def reduced(
+def reduce(
     depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics, max_side: int
 ) -> tuple[Float32[np.ndarray, "hs ws"], Intrinsics]:
     """The depth map at no more than `max_side` pixels a side, by picking pixels: depth must not be averaged."""

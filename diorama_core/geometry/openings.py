@@ -125,7 +125,7 @@ def _without(wall: Plane, covered: Sequence[Float[np.ndarray, "_ 3"]], frame_m: 
     rest = manifold3d.CrossSection([outline], manifold3d.FillRule.NonZero)
     whole = rest.area()
     for corners in covered:
-        rest -= _covered(corners @ axes, foot, frame_m)
+        rest -= _rectangle(corners @ axes, foot, frame_m)
     if rest.area() < 1e-4 or rest.area() > whole - 1e-6 or len(rest.decompose()) != 1:
         return wall
     contours = [np.asarray(c, dtype=np.float64) for c in rest.to_polygons()]
@@ -147,7 +147,7 @@ def _is_along_wall(item: SceneObject, wall: Plane) -> bool:
     return turned and float(ends.min()) <= along <= float(ends.max())
 
 
-def _covered(corners: Contour, foot: float, frame_m: float) -> manifold3d.CrossSection:
+def _rectangle(corners: Contour, foot: float, frame_m: float) -> manifold3d.CrossSection:
     """The rectangle that a door or window covers on its wall, less its frame; down to the floor where it stands."""
     (left, low), (right, high) = corners.min(axis=0) + frame_m, corners.max(axis=0) - frame_m
     if low - frame_m < foot + FOOT_M:

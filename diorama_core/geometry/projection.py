@@ -50,7 +50,7 @@ def visible_bounds(
     visible = np.ones(len(corners_camera), dtype=bool)
     every = np.flatnonzero(~inside)
     for cut in (every[at : at + _AT_ONCE] for at in range(0, len(every), _AT_ONCE)):
-        bounds[cut], visible[cut] = _clipped_bounds(corners_camera[cut], slack.take(cut, axis=-1), intrinsics)
+        bounds[cut], visible[cut] = _clip_bounds(corners_camera[cut], slack.take(cut, axis=-1), intrinsics)
     return bounds, visible
 
 
@@ -90,7 +90,7 @@ def frustum_slack(points: Float[np.ndarray, "3 *n"], k: Intrinsics) -> Float[np.
     )
 
 
-def _clipped_bounds(
+def _clip_bounds(
     corners: Float[np.ndarray, "n 8 3"], slack: Float[np.ndarray, "5 8 n"], k: Intrinsics
 ) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n"]]:
     """Bounds of the clipped edges, of the near plane's cut, and of the picture's corners that the cuboid covers."""
@@ -200,7 +200,7 @@ def plane_edges(plane: Plane) -> Float[np.ndarray, "n 2 3"]:
     return np.stack([plane.polygon, np.roll(plane.polygon, -1, axis=0)], axis=1)
 
 
-def seen_segments(camera: Camera, edges_world: Iterable[Float[np.ndarray, "_ 2 3"]]) -> Float[np.ndarray, "k 2 2"]:
+def visible_segments(camera: Camera, edges_world: Iterable[Float[np.ndarray, "_ 2 3"]]) -> Float[np.ndarray, "k 2 2"]:
     """Segments in pixels, cut where they come too near the camera; those all behind it are left out."""
     ends = np.concatenate([np.empty((0, 2, 3)), *edges_world])
     depth = camera.to_camera(ends)[..., 2]

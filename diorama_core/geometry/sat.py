@@ -77,9 +77,9 @@ def pack_parts(parts: Sequence[Sequence[ConvexPart]]) -> PaddedParts:
     """Pad the parts of objects (one sequence each, none empty) once, for many placements."""
     flat = [part for bodies_of_object in parts for part in bodies_of_object]
     return PaddedParts(
-        vertices=_padded([part.vertices for part in flat], repeat=True),
-        normals=_padded([part.normals for part in flat]),
-        edges=_padded([part.edges for part in flat]),
+        vertices=_pad([part.vertices for part in flat], repeat=True),
+        normals=_pad([part.normals for part in flat]),
+        edges=_pad([part.edges for part in flat]),
         counts=np.array([(len(q.vertices), len(q.normals), len(q.edges)) for q in flat], dtype=int).reshape(-1, 3),
         owner=np.array([i for i, bodies_of_object in enumerate(parts) for _ in bodies_of_object], dtype=int),
     )
@@ -156,7 +156,7 @@ def _block(
     return PairAxes(a, b, np.concatenate([axes, -axes], axis=1), np.concatenate([ahead, behind], axis=1))
 
 
-def _padded(arrays: Sequence[np.ndarray], *, repeat: bool = False) -> Float[np.ndarray, "b k 3"]:
+def _pad(arrays: Sequence[np.ndarray], *, repeat: bool = False) -> Float[np.ndarray, "b k 3"]:
     longest = max((len(x) for x in arrays), default=1)
     out = np.zeros((len(arrays), longest, 3))
     for k, x in enumerate(arrays):

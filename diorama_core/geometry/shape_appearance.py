@@ -65,7 +65,7 @@ class ShapeAppearance:
         if len(points) < 2:
             return np.zeros(2)
         tree = cKDTree(points)
-        options = [np.zeros(2), *(_trimmed_middle(points[:, :2], share) for share in _MAIN_SHARES)]
+        options = [np.zeros(2), *(_middle(points[:, :2], share) for share in _MAIN_SHARES)]
         unlike = [_unlike_when_turned(tree, points, option) for option in options]
         unlike[0] *= _KEEPS_MIDDLE
         return options[int(np.argmin(unlike))]
@@ -107,7 +107,7 @@ class ShapeAppearance:
         return ShapeCaster(opaque)
 
 
-def _trimmed_middle(xy: Float[np.ndarray, "n 2"], share: float) -> Float[np.ndarray, "2"]:
+def _middle(xy: Float[np.ndarray, "n 2"], share: float) -> Float[np.ndarray, "2"]:
     """The middle of the points' extent without the farthest ones."""
     middle = np.median(xy, axis=0)
     for _ in range(8):
@@ -244,7 +244,7 @@ class AppearanceStore:
         if not key:
             return appearance_of(parts())
         path = folder / f"{key}.{_FORMAT}.npz"
-        return self._cached.get(key, lambda: _read(path) or _made(path, parts()))
+        return self._cached.get(key, lambda: _read(path) or _make(path, parts()))
 
     def has(self, key: str, folder: Path) -> bool:
         """Whether the appearance of `key` is cached in `folder`."""
@@ -271,7 +271,7 @@ def _read(path: Path) -> ShapeAppearance | None:
     return None if arrays is None else ShapeAppearance(**dict(zip(_STORED.values(), arrays, strict=True)))
 
 
-def _made(path: Path, parts: trimesh.Scene) -> ShapeAppearance:
+def _make(path: Path, parts: trimesh.Scene) -> ShapeAppearance:
     appearance = appearance_of(parts)
     write_arrays(path, {name: getattr(appearance, of) for name, of in _STORED.items()})
     return appearance

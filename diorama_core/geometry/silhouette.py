@@ -163,7 +163,7 @@ class ShapeCaster:
         corners, edges = self.hull
         T = camera.T_camera_world
         points = T[:3, :3] @ poses.apply_by_coordinate(corners).reshape(3, -1) + T[:3, 3:]
-        return clipped_bounds(camera, points.reshape(3, len(poses), len(corners)), edges)
+        return clip_bounds(camera, points.reshape(3, len(poses), len(corners)), edges)
 
 
 def _rays(
@@ -206,7 +206,7 @@ def _hull(vertices: np.ndarray, size_m: np.ndarray) -> tuple[Float[np.ndarray, "
     return box_corners(size_m) + middle, edges_of_cuboid()
 
 
-def clipped_bounds(
+def clip_bounds(
     camera: Camera, points_camera: Float[np.ndarray, "3 p n"], edges: Int[np.ndarray, "e 2"]
 ) -> Float[np.ndarray, "p 4"]:
     """Boxes of the edges' visible parts: clipped to the near plane and to the photo; NaN where nothing is visible."""
@@ -236,7 +236,7 @@ def _cut_bounds(
     slack: Float[np.ndarray, "5 p n"],
     edges: Int[np.ndarray, "e 2"],
 ) -> Float[np.ndarray, "p 4"]:
-    """As `clipped_bounds`, for shapes that leave the view; `slack` is positive inside each of its five planes."""
+    """As `clip_bounds`, for shapes that leave the view; `slack` is positive inside each of its five planes."""
     first, second = edges.T
     slack = slack[(slack < 0).any(axis=(1, 2))]  # the other planes cut nothing
     a, b = slack[..., first], slack[..., second]

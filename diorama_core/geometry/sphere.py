@@ -36,7 +36,7 @@ def sphere_pixels(towards: Float[np.ndarray, "*n 3"], width: int) -> Float[np.nd
     )
 
 
-def sampled(picture: UInt8[np.ndarray, "h w 3"], towards: Float[np.ndarray, "a b 3"]) -> UInt8[np.ndarray, "a b 3"]:
+def sample(picture: UInt8[np.ndarray, "h w 3"], towards: Float[np.ndarray, "a b 3"]) -> UInt8[np.ndarray, "a b 3"]:
     """Colours of an equirectangular picture in some directions, also across its seam."""
     height, width = picture.shape[:2]
     at = (sphere_pixels(towards, width) * [1.0, height / (width / 2)] - 0.5).astype(np.float32)
@@ -61,7 +61,7 @@ def perspective(
     finer = max(1, round(picture.shape[1] / (2 * np.pi * k.fx)))
     if finer > 1:
         picture = cv2.resize(picture, None, fx=1 / finer, fy=1 / finer, interpolation=cv2.INTER_AREA)
-    return sampled(picture, Camera(k, T).rays(np.stack([x, y], axis=-1)))
+    return sample(picture, Camera(k, T).rays(np.stack([x, y], axis=-1)))
 
 
 def level_axes(azimuth_rad: float, elevation_rad: float = 0.0) -> Float[np.ndarray, "3 3"]:

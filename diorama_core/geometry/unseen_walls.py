@@ -71,7 +71,7 @@ def unseen_parts(scene: Scene) -> Unseen:
     return Unseen(tuple(planes), tuple(openings))
 
 
-def closed_room(scene: Scene) -> Scene:
+def close_room(scene: Scene) -> Scene:
     """The scene with what nobody saw of its room, as light meets it."""
     more = unseen_parts(scene).planes
     return replace(scene, architecture=Architecture((*scene.architecture.planes, *more))) if more else scene

@@ -79,13 +79,13 @@ def wall_lines(planes: Iterable[Plane], items: Sequence[SceneObject], scene: Sce
     fills = [o for o in items if o.category in OPENING_CATEGORIES]
     cut = walls_cut_by(fills, [w.plane for w in walls], scene)
 
-    def opened(wall: DrawnWall) -> DrawnWall:
-        hung = [_filled(wall, o) for o in fills if cut[o.id] and cut[o.id][0] is wall.plane]
-        behind = [_filled(wall, o, is_behind=True) for o in fills if any(w is wall.plane for w in cut[o.id][1:])]
+    def open_wall(wall: DrawnWall) -> DrawnWall:
+        hung = [_fill(wall, o) for o in fills if cut[o.id] and cut[o.id][0] is wall.plane]
+        behind = [_fill(wall, o, is_behind=True) for o in fills if any(w is wall.plane for w in cut[o.id][1:])]
         # Where each room has a door of its own in the wall, both stay.
         return _with_openings(wall, [*hung, *(b for b in behind if not any(_meet(b, h) for h in hung))])
 
-    return tuple(opened(w) for w in walls)
+    return tuple(open_wall(w) for w in walls)
 
 
 def bare_wall(plane: Plane) -> DrawnWall:
@@ -102,7 +102,7 @@ def _with_openings(wall: DrawnWall, filled: Sequence[Opening]) -> DrawnWall:
     return DrawnWall(wall.plane, wall.start, wall.end, wall.bottom_m, wall.top_m, ordered)
 
 
-def _filled(wall: DrawnWall, item: SceneObject, *, is_behind: bool = False) -> Opening:
+def _fill(wall: DrawnWall, item: SceneObject, *, is_behind: bool = False) -> Opening:
     """The opening of a door or window, which fills it in the face that it hangs on."""
     corners = item.corners_world
     along = np.clip((corners[:, :2] - wall.start) @ wall.direction, 0, wall.length_m)

@@ -27,7 +27,7 @@ from diorama_core.importing.roomplan import read_room_plan
 from diorama_core.importing.scene_frame import frame_of_scene
 from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.importing.usd import read_marked_usd
-from diorama_core.io.contained import content_of, unpacked
+from diorama_core.io.contained import content_of, unpack
 from diorama_core.io.file_heads import FileHead, head_of, what_else
 from diorama_core.library.ingest.models import form_of, read_model
 from diorama_core.progress import Progress
@@ -95,7 +95,7 @@ def open_form(path: Path) -> Iterator[tuple[SceneForm, Path]]:
         yield form, path
         return
     if head.is_zip and what_else(head) is None:
-        with unpacked(path) as folder, open_form(content_of(folder)) as recognised:
+        with unpack(path) as folder, open_form(content_of(folder)) as recognised:
             yield recognised
         return
     other = what_else(head)

@@ -18,7 +18,7 @@ from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.marked import MarkedFile, ObjectNode, as_bytes, as_ids, as_mapping
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.library.ingest.gltf import container
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.references import IMAGE_FORMATS, References, read_bytes
@@ -56,7 +56,7 @@ def read_marked_gltf(path: Path) -> MarkedFile | None:
     try:
         return _mark(path)
     except (LibraryError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError, OSError) as error:
-        reason = shortened(str(error))
+        reason = shorten(str(error))
         raise InputError(f"{path.name} cannot be read as glTF ({reason}); export it again") from error
 
 

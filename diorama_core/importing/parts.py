@@ -17,7 +17,7 @@ from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.part import Part
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.usd_meshes import usd_scene
-from diorama_core.library.ingest.usd_stage import Z_UP, opened_stage, usd_errors, world_of
+from diorama_core.library.ingest.usd_stage import Z_UP, open_stage, usd_errors, world_of
 from diorama_core.scene.types import SceneObject
 
 LARGEST_OBJECT_M = 3.5
@@ -57,7 +57,7 @@ def shape_parts(path: Path, marked: MarkedFile, item: SceneObject) -> Part | Non
 
 def parts_of_usd(path: Path, unit_m: float | None = None) -> tuple[tuple[Part, ...], tuple[str, ...]]:
     """Objects of a USD or USDZ file, and notes; `parts_of_gltf` says the arguments and errors."""
-    stage = opened_stage(path)
+    stage = open_stage(path)
     with usd_errors(path):
         return _to_metres(usd_scene(stage), world_of(stage), unit_m)
 

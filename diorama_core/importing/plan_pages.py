@@ -12,7 +12,7 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_core.errors import InputError, UnavailableError
-from diorama_core.io.bounded import picture_of, shortened
+from diorama_core.io.bounded import picture_of, shorten
 
 LARGEST_PX = 2400
 """Thin lines of a page stay readable."""
@@ -53,5 +53,5 @@ def _page(content: bytes, name: str) -> UInt8[np.ndarray, "h w 3"]:
         finally:
             document.close()
     except (pypdfium2.PdfiumError, IndexError, ValueError) as error:
-        reason = shortened(str(error), 100)
+        reason = shorten(str(error), 100)
         raise InputError(f"{name}: the page cannot be read ({reason}); export the plan again") from error

@@ -29,7 +29,7 @@ from diorama_core.importing.cloud_units import likely_unit
 from diorama_core.importing.data_set_frames import DATA_SET_FORMS
 from diorama_core.importing.depth_frames import FRAME_FORMS, UP_Y, UP_Z, FrameForm, cloud_of_frames
 from diorama_core.importing.point_cloud import MAX_POINTS, MIN_POINTS, PointCloud, points_of_mesh, to_metres, unit_note
-from diorama_core.io.bounded import megabytes, read_bytes, shortened
+from diorama_core.io.bounded import megabytes, read_bytes, shorten
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.file_heads import FileHead, head_of
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
@@ -198,7 +198,7 @@ def read_points(path: Path) -> PointCloud:
     except DioramaError:
         raise
     except Exception as error:  # readers of damaged files raise almost anything; it means the same
-        reason = shortened(str(error), 120) or type(error).__name__
+        reason = shorten(str(error), 120) or type(error).__name__
         raise InputError(f"{path.name}: the points cannot be read ({reason}); export them again") from error
     points = cloud.points[np.isfinite(cloud.points).all(axis=1)]
     if len(points) < MIN_POINTS:

@@ -37,7 +37,7 @@ from diorama_core.importing.roomplan_parts import (
     without_unusable,
 )
 from diorama_core.importing.roomplan_usd import read_usd
-from diorama_core.io.bounded import read_json, shortened
+from diorama_core.io.bounded import read_json, shorten
 from diorama_core.library.ingest.usd_stage import Z_UP
 
 MAX_JSON_BYTES = 64_000_000
@@ -80,7 +80,7 @@ def _from_json(path: Path) -> MeasuredRoom | None:
         document = next(iter(rooms.values())) if len(rooms) == 1 else _combine(rooms)
     except (LookupError, TypeError, ValueError, AttributeError) as error:
         raise InputError(
-            f"{path.name}: a room has no place in the home ({shortened(str(error))}); export its rooms together"
+            f"{path.name}: a room has no place in the home ({shorten(str(error))}); export its rooms together"
         ) from error
     names = {key: document.get(key) or [] for key in ("walls", "objects", "floors", "sections", *_SURFACES)}
     if not all(isinstance(rows, list) for rows in names.values()) or sum(map(len, names.values())) > MAX_PARTS:
@@ -94,7 +94,7 @@ def _from_json(path: Path) -> MeasuredRoom | None:
         sections = [(_section_name(row), Z_UP[:3, :3] @ _point(row["center"])) for row in names["sections"]]
     except (LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
         raise InputError(
-            f"{path.name}: a wall or an object makes no sense ({shortened(str(error))}); export the scan again"
+            f"{path.name}: a wall or an object makes no sense ({shorten(str(error))}); export the scan again"
         ) from error
     joined = join_floors([Polygon(f[:, :2]) for f in floors], [float(f[:, 2].mean()) for f in floors])
     joined = name_floors(joined, [(name, at) for name, at in sections if name], walls)
@@ -127,7 +127,7 @@ def _combine(rooms: Mapping[Path, Mapping[str, Any]]) -> Mapping[str, Any]:
 def _section_name(row: Mapping[str, Any]) -> str:
     """The name that RoomPlan gives a part of the floor; empty where it knows none."""
     label = _word(row.get("label") or "")
-    return "" if label == "unidentified" else shortened(spoken(label), 60)
+    return "" if label == "unidentified" else shorten(spoken(label), 60)
 
 
 def _point(values: Any) -> Float[np.ndarray, "3"]:

@@ -18,7 +18,7 @@ from diorama_core.importing.measured_types import (
     MeasuredFloor,
     MeasuredWall,
 )
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.library.labels import meanings
 from diorama_core.library.taxonomy import UNKNOWN, column, resolve
 
@@ -95,7 +95,7 @@ def box_of(
     front[2] = 0.0
     length = float(np.linalg.norm(front))
     if length < 0.5 or np.sort(size)[1] < MIN_SIDE_M:
-        return shortened(spoken(word) or "thing")
+        return shorten(spoken(word) or "thing")
     front /= length
     up = np.array([0.0, 0.0, 1.0])
     R = np.stack([front, np.cross(up, front), up], axis=1)

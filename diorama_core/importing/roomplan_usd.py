@@ -37,9 +37,9 @@ _NAMED = re.compile(r"^([A-Za-z]+?)_?\d*$")
 
 def read_usd(path: Path) -> MeasuredRoom | None:
     """What RoomPlan measured, from its USDZ; None where the file is not from it."""
-    from diorama_core.library.ingest.usd_stage import opened_stage, usd_errors
+    from diorama_core.library.ingest.usd_stage import open_stage, usd_errors
 
-    stage = opened_stage(path)
+    stage = open_stage(path)
     with usd_errors(path):
         return _from_stage(stage, path)
 

@@ -24,12 +24,12 @@ from jaxtyping import Float
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.importing.part import Part
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.text import parse_xml
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import SUFFIXES, read_model
-from diorama_core.library.ingest.names import named_kind
+from diorama_core.library.ingest.names import kind_in
 from diorama_core.library.kinds import is_possible
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.progress import SILENT, Progress
@@ -66,7 +66,7 @@ def parts_of_sweet_home(path: Path, progress: Progress = SILENT) -> tuple[tuple[
             _take_out(archive, furniture, Path(folder), path)
             pieces = []
             for piece in furniture:
-                progress.report(0.0, f"reading {shortened(piece.get('name', piece.tag))}")
+                progress.report(0.0, f"reading {shorten(piece.get('name', piece.tag))}")
                 pieces.append(_piece(piece, ContainedFiles(Path(folder), InputError), _level_m(piece, levels)))
     except (
         zipfile.BadZipFile,
@@ -78,7 +78,7 @@ def parts_of_sweet_home(path: Path, progress: Progress = SILENT) -> tuple[tuple[
         lzma.LZMAError,
     ) as error:
         # Damaged, encrypted, compressed in an unknown way, or with names that cannot be files beside each other.
-        raise InputError(f"{path.name} is no Sweet Home 3D file ({shortened(str(error))}); save it again") from error
+        raise InputError(f"{path.name} is no Sweet Home 3D file ({shorten(str(error))}); save it again") from error
     height = _number(home, "wallHeight", 250.0)
     walls = [_wall(w, height, _level_m(w, levels)) for w in home.iter("wall") if _is_shown(w, home, levels)]
     outlined = [r for r in home.iter("room") if len(r.findall("point")) >= 3 and _is_shown(r, home, levels)]
@@ -104,7 +104,7 @@ def _is_shown(element: ET.Element, home: ET.Element, levels: Mapping[str, float]
 
 def _notes(home: ET.Element, levels: Mapping[str, float]) -> tuple[str, ...]:
     names = [
-        (shortened(str(e.get("name") or e.get("id", "")), 40), e.get("id", "") in levels) for e in home.iter("level")
+        (shorten(str(e.get("name") or e.get("id", "")), 40), e.get("id", "") in levels) for e in home.iter("level")
     ]
     hidden = [name for name, shown in names if not shown]
     notes = [f"hidden levels were left out: {', '.join(hidden)}"] if hidden else []
@@ -184,7 +184,7 @@ def _category(piece: ET.Element, size_m: Sequence[float]) -> str | None:
     width, depth, height = size_m
     catalogue = re.sub(r"\d+x\d+.*$", "", piece.get("catalogId", "").partition("#")[2])
     for name in (catalogue, piece.get("name", "")):
-        kind = named_kind(name) if name else None
+        kind = kind_in(name) if name else None
         if kind is not None and kind != UNKNOWN.name and is_possible(kind, np.array([depth, width, height])):
             return kind
     if piece.tag == "doorOrWindow":
@@ -224,7 +224,7 @@ def _room(room: ET.Element, level_m: float) -> Part:
     points = np.array([[_number(p, "x"), -_number(p, "y")] for p in room.findall("point")]) * M_PER_CM
     slab = _slab(points)
     slab.apply_translation([0.0, 0.0, level_m])
-    return Part("floor", trimesh.Scene({"floor": slab}), np.eye(4), room=shortened(room.get("name", ""), 60))
+    return Part("floor", trimesh.Scene({"floor": slab}), np.eye(4), room=shorten(room.get("name", ""), 60))
 
 
 def _slab(points: Float[np.ndarray, "n 2"]) -> trimesh.Trimesh:

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from diorama_core.importing.gltf import CAMERA_AXES
 from diorama_core.importing.marked import MarkedFile, ObjectNode, as_bytes, as_ids, as_mapping
-from diorama_core.library.ingest.usd_stage import matrix_of, opened_stage, usd_errors, world_of
+from diorama_core.library.ingest.usd_stage import matrix_of, open_stage, usd_errors, world_of
 
 
 def read_marked_usd(path: Path) -> MarkedFile | None:
@@ -20,7 +20,7 @@ def read_marked_usd(path: Path) -> MarkedFile | None:
         InputError: when the file cannot be read.
         UnavailableError: when usd-core is missing.
     """
-    stage = opened_stage(path)
+    stage = open_stage(path)
     with usd_errors(path):
         return _mark(stage)
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, Protocol, runtime_checkable
 
 from diorama_core.errors import DioramaError
-from diorama_core.io.bounded import MAX_JSON_BYTES, Kind, megabytes, parse_json, shortened
+from diorama_core.io.bounded import MAX_JSON_BYTES, Kind, megabytes, parse_json, shorten
 from diorama_core.io.text import clean_strings
 
 LEFTOVER_S = 3600.0
@@ -65,7 +65,7 @@ def open_atomically(path: Path, *, error: type[DioramaError] | None = None) -> I
             raise
         raise error(f"cannot write in {path.parent} ({_reason(cause)}); choose a folder you may write to") from cause
     try:
-        with _deleted_on_failure(part):
+        with _delete_on_failure(part):
             with part.open("wb") as stream:
                 yield stream
                 stream.flush()
@@ -87,7 +87,7 @@ def _new_part(path: Path) -> Path:
 
 
 @contextmanager
-def _deleted_on_failure(part: Path) -> Iterator[None]:
+def _delete_on_failure(part: Path) -> Iterator[None]:
     try:
         yield
     except BaseException:
@@ -131,7 +131,7 @@ def write_document(
             raise error(f"it has more than the {megabytes(most)} that are read")
         read(data)
     except DioramaError as reason:
-        why = shortened(str(reason))
+        why = shorten(str(reason))
         raise error(f"{path} stays as it was, since what was to be written could not be read again: {why}") from reason
     write_atomically(path, data, error=error)
 
@@ -154,5 +154,5 @@ def write_json(
     try:
         data = json.dumps(clean_strings(document), indent=indent).encode()
     except (ValueError, RecursionError) as reason:
-        raise error(f"{path} stays as it was: a value cannot be written ({shortened(str(reason))})") from reason
+        raise error(f"{path} stays as it was: a value cannot be written ({shorten(str(reason))})") from reason
     write_document(path, data, lambda known: parse_json(known, path.name, error), error, most=most)

@@ -72,7 +72,7 @@ def read_bytes(path: Path, most: int, error: Kind, advice: str = "restore it fro
     except OSError as reason:
         raise error(f"{path} cannot be read ({reason.strerror or reason}); {advice}") from reason
     except (ValueError, MemoryError) as reason:  # a null character in the name; a file larger than what is free
-        raise error(f"{shortened(str(path))} cannot be read ({reason}); {advice}") from reason
+        raise error(f"{shorten(str(path))} cannot be read ({reason}); {advice}") from reason
 
 
 def read_json(path: Path, error: Kind, *, most: int = MAX_JSON_BYTES, advice: str = "restore it from a copy") -> Any:
@@ -115,11 +115,11 @@ def parse_json(
         if rb"\u" in raw:
             json.dumps(value, ensure_ascii=False).encode()  # half of a character pair cannot be written
     except json.JSONDecodeError as reason:
-        raise error(f"{name} is not valid JSON (line {reason.lineno}: {shortened(reason.msg)}); {advice}") from reason
+        raise error(f"{name} is not valid JSON (line {reason.lineno}: {shorten(reason.msg)}); {advice}") from reason
     except UnicodeError as reason:
         raise error(f"{name} holds bytes that are no text (UTF-8); {advice}") from reason
     except (ValueError, RecursionError, MemoryError) as reason:
-        raise error(f"{name} cannot be read ({shortened(str(reason)) or type(reason).__name__}); {advice}") from reason
+        raise error(f"{name} cannot be read ({shorten(str(reason)) or type(reason).__name__}); {advice}") from reason
     return value
 
 
@@ -183,7 +183,7 @@ def read_picture(
     return picture_of(data, str(path), error, most_pixels=most_pixels, within=within)
 
 
-def shortened(words: str, most: int = _MAX_WORDS) -> str:
+def shorten(words: str, most: int = _MAX_WORDS) -> str:
     """One line of at most `most` characters, without control characters and half characters."""
     line = " ".join(words.encode("utf-8", "replace").decode().split())
     line = "".join(c for c in line if c.isprintable())

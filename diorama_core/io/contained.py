@@ -18,7 +18,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import Kind, megabytes, read_bytes, shortened
+from diorama_core.io.bounded import Kind, megabytes, read_bytes, shorten
 
 _ADDRESS = re.compile(r"^[a-zA-Z][a-zA-Z0-9+.-]+://")
 _ABSOLUTE = re.compile(r"^(/|[a-zA-Z][a-zA-Z0-9+.-]*:)")
@@ -51,7 +51,7 @@ class ContainedFiles:
         """
         plain = self._plain(name)
         if _ABSOLUTE.match(plain):
-            raise self.error(f"{shown(name)} points outside the folder that was added")
+            raise self.error(f"{quote(name)} points outside the folder that was added")
         return self.checked((folder or self.root) / plain, name)
 
     def path_or_beside(self, name: str, folder: Path) -> Path:
@@ -81,7 +81,7 @@ class ContainedFiles:
         Raises:
             error: as `path`.
         """
-        shown_name = shown(str(path) if name is None else name)
+        shown_name = quote(str(path) if name is None else name)
         inside = self._relative_to_root(path)
         if inside is None:
             raise self.error(f"{shown_name} points outside the folder that was added")
@@ -123,9 +123,9 @@ class ContainedFiles:
         """The name with forward slashes; refuses what is no name of a file."""
         plain = unquote(name).replace("\\", "/").strip()
         if "\0" in plain or plain.rpartition("/")[2] in ("", ".", ".."):
-            raise self.error(f"{shown(name)} is no file name")
+            raise self.error(f"{quote(name)} is no file name")
         if _ADDRESS.match(plain):
-            raise self.error(f"{shown(name)} is a web address; nothing is downloaded")
+            raise self.error(f"{quote(name)} is a web address; nothing is downloaded")
         return plain
 
     def _relative_to_root(self, path: Path) -> Path | None:
@@ -137,7 +137,7 @@ class ContainedFiles:
         return plain if plain.parts else None
 
 
-def shown(name: str) -> str:
+def quote(name: str) -> str:
     """A foreign name, safe and short enough for one line."""
     plain = "".join(c if c.isprintable() else "?" for c in name)
     return f"'{plain if len(plain) <= _MAX_SHOWN else plain[: _MAX_SHOWN - 3] + '...'}'"
@@ -148,7 +148,7 @@ MAX_MEMBERS = 50_000
 
 
 @contextmanager
-def unpacked(path: Path, most: int = MAX_UNPACKED) -> Iterator[Path]:
+def unpack(path: Path, most: int = MAX_UNPACKED) -> Iterator[Path]:
     """A folder with an archive's files, for the time of the context.
 
     Args:
@@ -171,7 +171,7 @@ def unpacked(path: Path, most: int = MAX_UNPACKED) -> Iterator[Path]:
                     archive.extract(member, folder)  # zipfile keeps names inside the folder
         except (zipfile.BadZipFile, zlib.error, OSError, RuntimeError, NotImplementedError, EOFError, ValueError,
                 lzma.LZMAError) as error:  # fmt: skip
-            raise InputError(f"{path.name} cannot be unpacked ({shortened(str(error))}); save it again") from error
+            raise InputError(f"{path.name} cannot be unpacked ({shorten(str(error))}); save it again") from error
         yield Path(folder)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from diorama_core.errors import InputError
 from diorama_core.io.arrays import arrays_of
 from diorama_core.io.atomic import write_atomically
-from diorama_core.io.bounded import read_bytes, shortened
+from diorama_core.io.bounded import read_bytes, shorten
 
 log = logging.getLogger(__name__)
 
@@ -31,7 +31,7 @@ def read_derived(path: Path) -> bytes | None:
         return None
 
 
-def derived(path: Path, make: Callable[[], bytes], value_of: Callable[[bytes], T]) -> T:
+def derive(path: Path, make: Callable[[], bytes], value_of: Callable[[bytes], T]) -> T:
     """The value in a file, which is made and written when it is absent or damaged.
 
     Args:
@@ -44,7 +44,7 @@ def derived(path: Path, make: Callable[[], bytes], value_of: Callable[[bytes], T
         try:
             return value_of(data)
         except Exception as error:  # damaged bytes raise almost anything, and all of it means the same
-            log.warning("%s is damaged (%s); it is made again", path, shortened(str(error)) or type(error).__name__)
+            log.warning("%s is damaged (%s); it is made again", path, shorten(str(error)) or type(error).__name__)
     data = make()
     write_derived(path, data)
     return value_of(data)
@@ -81,7 +81,7 @@ def read_arrays(path: Path, *names: str, mark_use: bool = False) -> tuple[np.nda
     try:
         arrays = arrays_of(content, names)
     except Exception as error:  # damaged bytes make zip and array headers raise almost anything
-        log.warning("%s is damaged (%s); it is made again", path, shortened(str(error)) or type(error).__name__)
+        log.warning("%s is damaged (%s); it is made again", path, shorten(str(error)) or type(error).__name__)
         return None
     if mark_use:
         with suppress(OSError):  # another's folder may be read but not touched

@@ -69,15 +69,15 @@ def _without_plots() -> Any:
         return importlib.import_module("open3d")
     stand_in = ModuleType(_PLOTS)
     for name in _FUNCTIONS:
-        setattr(stand_in, name, _loaded_on_call(name))
+        setattr(stand_in, name, _load_on_call(name))
     sys.modules[_PLOTS] = stand_in
     try:
-        return _imported()
+        return _import()
     finally:
         del sys.modules[_PLOTS]
 
 
-def _imported() -> Any:
+def _import() -> Any:
     for _ in range(_TRIES - 1):
         try:
             return importlib.import_module("open3d")
@@ -87,7 +87,7 @@ def _imported() -> Any:
     return importlib.import_module("open3d")
 
 
-def _loaded_on_call(name: str) -> Callable[..., Any]:
+def _load_on_call(name: str) -> Callable[..., Any]:
     def call(*args: Any, **kwargs: Any) -> Any:
         return getattr(importlib.import_module(_PLOTS), name)(*args, **kwargs)
 

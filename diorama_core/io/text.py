@@ -69,13 +69,13 @@ def parse_xml(data: bytes, name: str, error: Kind) -> ET.Element:
     Raises:
         error: no well-formed XML, entities, or elements nested too deeply.
     """
-    from diorama_core.io.bounded import shortened  # which loads numpy; the command line's help does without it
+    from diorama_core.io.bounded import shorten  # which loads numpy; the command line's help does without it
 
     try:
         _check(data, name, error)
         return ET.fromstring(data)
     except (ET.ParseError, expat.ExpatError, ValueError, LookupError) as reason:
-        raise error(f"{name} is damaged ({shortened(str(reason))}); save it again") from reason
+        raise error(f"{name} is damaged ({shorten(str(reason))}); save it again") from reason
 
 
 def _check(data: bytes, name: str, error: Kind) -> None:
@@ -84,17 +84,17 @@ def _check(data: bytes, name: str, error: Kind) -> None:
     def refuse(*_: Any) -> NoReturn:
         raise error(f"{name} defines entities, which are not read; save it again without them")
 
-    def opened(*_: Any) -> None:
+    def open_element(*_: Any) -> None:
         nonlocal depth
         depth += 1
         if depth > MAX_DEPTH:
             raise error(f"{name} has elements nested more than {MAX_DEPTH} deep; save it again")
 
-    def closed(*_: Any) -> None:
+    def close_element(*_: Any) -> None:
         nonlocal depth
         depth -= 1
 
     parser = expat.ParserCreate()
     parser.EntityDeclHandler = refuse
-    parser.StartElementHandler, parser.EndElementHandler = opened, closed
+    parser.StartElementHandler, parser.EndElementHandler = open_element, close_element
     parser.Parse(data)  # a document that is cut short is found by who reads it

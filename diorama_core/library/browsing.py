@@ -34,7 +34,7 @@ class Filters:
         return self != Filters()
 
 
-def browsed(
+def browse(
     shapes: Sequence[Shape],
     filters: Filters,
     *,

@@ -20,7 +20,7 @@ from PIL import Image
 from diorama_core.errors import LibraryError
 from diorama_core.io.bounded import parse_json
 from diorama_core.io.cache import LruCache
-from diorama_core.io.derived import derived
+from diorama_core.io.derived import derive
 from diorama_core.io.glb import whole_glb
 from diorama_core.library import furniture, taxonomy
 from diorama_core.library.furniture.geometry_key import code_key, geometry_key
@@ -79,7 +79,7 @@ _library_of_process = lru_cache(maxsize=1)(_library_in)
 
 
 @lru_cache(maxsize=2)
-def _opened(cache_dir: Path) -> BuiltInLibrary:
+def _open(cache_dir: Path) -> BuiltInLibrary:
     """The library of a process that was sent one."""
     return built_in_library() if cache_dir == default_cache_dir() else built_in_library(cache_dir)
 
@@ -112,7 +112,7 @@ class BuiltInLibrary:
         """Other processes open their own; raises `PicklingError` for one of designs that they cannot know."""
         if self._designs.keys() != {d.id for d in furniture.designs()}:
             raise PicklingError(f"{self!r} is not the library that comes with Diorama")
-        return _opened, (self._folder.parent,)
+        return _open, (self._folder.parent,)
 
     def shapes(self) -> tuple[Shape, ...]:
         """All records in a stable order, without support surfaces."""
@@ -147,7 +147,7 @@ class BuiltInLibrary:
         return self._glbs.get(shape_id, lambda: self._stored_glb(record))
 
     def _stored_glb(self, record: Shape) -> bytes:
-        return derived(self._glb_path(record), lambda: _glb(self.parts(record.id)), whole_glb)
+        return derive(self._glb_path(record), lambda: _glb(self.parts(record.id)), whole_glb)
 
     def is_built(self, shape_id: str) -> bool:
         """Whether the model and the support surfaces of a shape are on disk."""
@@ -186,7 +186,7 @@ class BuiltInLibrary:
         def measure() -> bytes:
             return _surfaces_to_json(support_surfaces(self.mesh(record.id)))
 
-        return derived(self._surfaces_path(record), measure, _surfaces_from_json)
+        return derive(self._surfaces_path(record), measure, _surfaces_from_json)
 
 
 def _bytes_of(scene: trimesh.Scene) -> float:
@@ -268,7 +268,7 @@ def scene_with_pictures(solids: Iterable[tuple[Material, Solid]], folder: Path) 
 def cached_picture(material: Material, folder: Path) -> bytes:
     """`picture_bytes` from its file, which is renewed with the material and the code that paints."""
     name = hashlib.sha256(f"{_code()} {material.name} {material.kind} {material.colour}".encode()).hexdigest()[:32]
-    return derived(folder / f"{name}.jpg", lambda: picture_bytes(material), _whole)
+    return derive(folder / f"{name}.jpg", lambda: picture_bytes(material), _whole)
 
 
 @cache

@@ -83,7 +83,7 @@ def form_of(
         form["base"] = _base(points, size_m, seat=category in _SEATS)
     if category in _SEATS:
         form["arms"] = _arms(points, size_m)
-    if category in _BACKED and (back := _filled_back(mesh)) is not None:
+    if category in _BACKED and (back := _back_fill(mesh)) is not None:
         form["open back"] = "yes" if back < _OPEN_BACK else "no"
     if category in _HARD_OR_SOFT and (soft := _soft_share(slots)) is not None:
         form["upholstered"] = "yes" if soft >= _SOFT else "no"
@@ -122,7 +122,7 @@ def agrees(stated: str | int, design: str | int) -> bool:
     return {stated, design} == {"square", "rectangular"}
 
 
-def compared(stated: Mapping[str, str | int], design: Mapping[str, str | int]) -> dict[str, bool]:
+def compare(stated: Mapping[str, str | int], design: Mapping[str, str | int]) -> dict[str, bool]:
     """For every attribute that both state, whether they agree."""
     return {name: agrees(stated[name], design[name]) for name in MEASURED if name in stated and name in design}
 
@@ -195,7 +195,7 @@ def _soft_share(slots: Sequence[Slot]) -> float | None:
     return sum(slot.area_m2 for slot in slots if slot.role in ("fabric", "leather")) / whole
 
 
-def _filled_back(mesh: trimesh.Trimesh) -> float | None:
+def _back_fill(mesh: trimesh.Trimesh) -> float | None:
     """Share of the outline around a seat's back that is not seen through from the front; None where it has none."""
     points, low, size = _surface_points(mesh), mesh.bounds[0], np.maximum(mesh.extents, 1e-9)
     depth, aside = (points[:, 0] - low[0]) / size[0] - 0.5, np.abs((points[:, 1] - low[1]) / size[1] - 0.5) * 2

@@ -93,7 +93,7 @@ def understand_label(label: str) -> Resolution:
     Args:
         label: as a person or a detector called one thing: a noun, a phrase, a data set's label.
     """
-    resolution = _found(label)
+    resolution = _find(label)
     if resolution is None:
         return resolve(label)
     word, exact = resolution
@@ -108,7 +108,7 @@ def understand_label(label: str) -> Resolution:
 @cache
 def plain_word(label: str) -> str | None:
     """The name, synonym or loose word (a key of `MEANINGS`) that a label comes down to; None where it names nothing."""
-    resolution = _found(label)
+    resolution = _find(label)
     if resolution is not None:
         return resolution[0]
     slip = resolve(label).category
@@ -129,7 +129,7 @@ def _category_of(word: str) -> taxonomy.Category:
     return category(max(shares, key=lambda kind: shares[kind]))
 
 
-def _found(label: str) -> tuple[str, bool] | None:
+def _find(label: str) -> tuple[str, bool] | None:
     """The plain word, and whether it says the same rather than the nearest thing in form."""
     exact, near = _names(), other_names()
     run = next((run for run in _runs(label) if run in exact or run in near), None)
@@ -209,7 +209,7 @@ def meanings(label: str, category: str) -> Mapping[str, float]:
         shares = {c.name: FREQUENCIES.get(c.name, _RARE) for c in CATEGORIES if c is not UNKNOWN}
         if category in shares:
             shares[category] = 2 * max(shares.values())
-        return _ordered(shares)
+        return _order(shares)
     if word in MEANINGS:
         shares = dict(MEANINGS[word])
     else:
@@ -217,7 +217,7 @@ def meanings(label: str, category: str) -> Mapping[str, float]:
         shares = {category: 1.0, **{name: _SPECIAL_SHARE / len(special) for name in special}}
     if category != UNKNOWN.name:
         shares.setdefault(category, min(shares.values()))
-    return _ordered(shares)
+    return _order(shares)
 
 
 def is_named(label: str) -> bool:
@@ -225,6 +225,6 @@ def is_named(label: str) -> bool:
     return plain_word(label) not in (None, UNKNOWN.name)
 
 
-def _ordered(shares: Mapping[str, float]) -> dict[str, float]:
+def _order(shares: Mapping[str, float]) -> dict[str, float]:
     whole = sum(shares.values())
     return {kind: share / whole for kind, share in sorted(shares.items(), key=lambda row: (-row[1], row[0]))}

@@ -73,7 +73,7 @@ def understand(text: str, size_m: Size | None = None) -> TextQuery:
     exact = True
     for phrase in _phrases(rest):
         words = tokens(phrase)
-        near_kind = _named_in(words)
+        near_kind = _find_name(words)
         if near_kind is None:
             near = _nearest(words, size)
             exact = exact and near is None
@@ -100,7 +100,7 @@ def _phrases(text: str) -> list[str]:
     return [part for part in re.split(r"[,;/&+]|\band\b|\bor\b|\bplus\b", text.lower()) if tokens(part)]
 
 
-def _named_in(words: Sequence[str]) -> tuple[str, tuple[str, ...]] | None:
+def _find_name(words: Sequence[str]) -> tuple[str, tuple[str, ...]] | None:
     """The category that a phrase names and the words that do: the last known name before "with", "for"..."""
     table = _names()
     across = [w for w in _runs(words, len(words)) if w in table and JOINTS & set(w)]
@@ -114,7 +114,7 @@ def _named_in(words: Sequence[str]) -> tuple[str, tuple[str, ...]] | None:
             if name in table:
                 return table[name], run
     if "of" in words:  # "a pair of lamps", "set of chairs"
-        return _named_in(words[list(words).index("of") + 1 :])
+        return _find_name(words[list(words).index("of") + 1 :])
     return None
 
 
@@ -144,7 +144,7 @@ def _nearest(words: Sequence[str], size: Size | None) -> _Near | None:
         slip = _closest(word, _SLIP) if len(word) > 3 else None
         if slip is not None:
             return _Near(table[slip], (word,), f"'{word}' is not known; read as '{' '.join(slip)}' ({table[slip]})")
-        ending = _known_ending(word)
+        ending = _ending(word)
         if ending is not None:
             return _Near(table[ending], (word,), f"'{word}' is not known; taken for a kind of '{table[ending]}'")
     noun = head[-1]
@@ -163,7 +163,7 @@ def _closest(word: str, cutoff: float) -> tuple[str, ...] | None:
     return joined[close[0]] if close else None
 
 
-def _known_ending(word: str) -> tuple[str, ...] | None:
+def _ending(word: str) -> tuple[str, ...] | None:
     """The longest name that ends a compound: "footlocker" is a locker."""
     names = _names()
     return next(((word[i:],) for i in range(2, len(word) - 2) if (word[i:],) in names), None)

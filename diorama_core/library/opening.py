@@ -32,14 +32,14 @@ def articulation_of(library: ShapeLibrary, shape_id: str) -> Articulation | None
     record = record_of(library, shape_id)
     if record.source == BUILT_IN:
         return articulation(shape_id)
-    return _NOTED.get((record.content_hash, shape_id), lambda: _noted(library.parts(shape_id)))
+    return _NOTED.get((record.content_hash, shape_id), lambda: _joints(library.parts(shape_id)))
 
 
 _NOTED: LruCache[tuple[str, str], Articulation | None] = LruCache(256)
 _OPENED: LruCache[tuple[str, str, int, Scale], trimesh.Scene] = LruCache(64)
 
 
-def _noted(parts: trimesh.Scene) -> Articulation | None:
+def _joints(parts: trimesh.Scene) -> Articulation | None:
     if all((notes := notes_of(mesh)) is None or notes.joint is None for mesh in parts.geometry.values()):
         return None
     meshes = {str(name): transform(mesh, transform_of(parts, name)) for name, mesh in parts.geometry.items()}
@@ -53,10 +53,10 @@ def _noted(parts: trimesh.Scene) -> Articulation | None:
         scene.add_geometry(mesh, node_name=label, geom_name=label)
         uv = np.zeros((len(mesh.vertices), 2))
         solids.append((number, Solid(mesh.vertices, mesh.faces, mesh.vertex_normals, uv)))
-    return Articulation(_numbered(joints), scene, tuple(solids))
+    return Articulation(_number(joints), scene, tuple(solids))
 
 
-def _numbered(joints: list[Joint]) -> tuple[Joint, ...]:
+def _number(joints: list[Joint]) -> tuple[Joint, ...]:
     """Joints whose names are unique: "door 1", "door 2"."""
     counts, met, out = Counter(joint.name for joint in joints), Counter[str](), []
     for joint in joints:
@@ -71,7 +71,7 @@ def can_open(library: ShapeLibrary, shape_id: str) -> bool:
     return pieces is not None and any(j.kind != "swivel" for j in pieces.joints)
 
 
-def opened_parts(library: ShapeLibrary, shape_id: str, open_share: float, scale: Scale = EVEN) -> trimesh.Scene:
+def open_parts(library: ShapeLibrary, shape_id: str, open_share: float, scale: Scale = EVEN) -> trimesh.Scene:
     """The parts of a shape as it stands open; the library's own where nothing of it opens.
 
     Args:
@@ -88,28 +88,28 @@ def opened_parts(library: ShapeLibrary, shape_id: str, open_share: float, scale:
     if pieces is None or all(joint.kind == "swivel" for joint in pieces.joints):
         return library.parts(shape_id)
     key = (record_of(library, shape_id).content_hash, shape_id, step, scale)
-    return _OPENED.get(key, lambda: _opened(pieces, step, scale))
+    return _OPENED.get(key, lambda: _open(pieces, step, scale))
 
 
 class OpenedShapes:
     """Lets an open shape be read like the parts of a library's shape."""
 
     def __init__(self, library: ShapeLibrary, open_share: float, scale: Scale = EVEN) -> None:
-        """Arguments as for `opened_parts`."""
+        """Arguments as for `open_parts`."""
         self._library, self._open_share, self._scale = library, open_share, scale
 
     def parts(self, shape_id: str) -> trimesh.Scene:
         """Geometry with materials, in the canonical frame. Shared: do not change it."""
-        return opened_parts(self._library, shape_id, self._open_share, self._scale)
+        return open_parts(self._library, shape_id, self._open_share, self._scale)
 
 
-def _opened(pieces: Articulation, step: int, scale: Scale) -> trimesh.Scene:
+def _open(pieces: Articulation, step: int, scale: Scale) -> trimesh.Scene:
     scene = trimesh.Scene()
     for name, mesh in pieces.scene.geometry.items():
         number = joint_of(str(name))
         shown = mesh.copy()
         if number is not None:
-            shown.vertices = _moved(np.asarray(mesh.vertices), pieces.joints[number], step / STEPS, np.array(scale))
+            shown.vertices = _move(np.asarray(mesh.vertices), pieces.joints[number], step / STEPS, np.array(scale))
         scene.add_geometry(shown, node_name=str(name), geom_name=str(name))
     return scene
 
@@ -121,7 +121,7 @@ def travel_at(joint: Joint, open_share: float) -> float:
     return joint.lower + round(open_share * STEPS) / STEPS * (joint.upper - joint.lower)
 
 
-def _moved(
+def _move(
     vertices: Float[np.ndarray, "n 3"], joint: Joint, share: float, scale: Float[np.ndarray, "3"]
 ) -> Float[np.ndarray, "n 3"]:
     """Vertices moved a share of the way along a joint, rigidly in the scaled shape."""

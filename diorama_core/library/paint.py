@@ -24,7 +24,7 @@ _METALLIC_ROUGHNESS: dict[Finish, tuple[float, float]] = {
 """Metal keeps a little diffuse colour: where a viewer has no surroundings to mirror, pure metal is black."""
 
 
-def painted(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None = None) -> trimesh.Scene:
+def repaint(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None = None) -> trimesh.Scene:
     """The shape with its main material, the one that covers most area, in `colour` and `finish` (None: its own).
 
     The texture stays as light and dark detail, so wood keeps its grain and cloth its weave; legs, handles and screens

@@ -14,7 +14,7 @@ from trimesh.visual.material import PBRMaterial
 
 from diorama_core.io.srgb import srgb_to_linear
 from diorama_core.library.paint import Colour, physically_based, recolour
-from diorama_core.library.slots import Slot, matched, placed_vertices, rectangle_of, slots_of
+from diorama_core.library.slots import Slot, match, place_vertices, rectangle_of, slots_of
 from diorama_core.scene.types import PhotoMaterial
 
 WARM, WARM_PALE, PALE = 0.12, 0.22, 0.85
@@ -40,16 +40,16 @@ def with_photo_materials(parts: trimesh.Scene, materials: Sequence[PhotoMaterial
         pictures: Their textures by name; without one, a tiled material shows its colour, a face the shape's own.
     """
     slots = slots_of(parts)
-    parts = with_own_corners(parts, [s for s in slots if s.name in matched(slots, materials)])
+    parts = with_own_corners(parts, [s for s in slots if s.name in match(slots, materials)])
     scene = parts.copy()
     for slot in slots:
-        material = matched(slots, materials).get(slot.name)
+        material = match(slots, materials).get(slot.name)
         if material is None or (material.layout != "tiled" and material.texture not in pictures):
             continue
         if material.texture not in pictures:
             _recolour(scene, slot, material)
             continue
-        made = _pictured(material, pictures[str(material.texture)])
+        made = _picture(material, pictures[str(material.texture)])
         for name in slot.geometry:
             scene.geometry[name].visual = TextureVisuals(uv=_uv(parts, slot, name, material), material=made)
     return scene
@@ -88,7 +88,7 @@ def _is_patterned(material: PBRMaterial) -> bool:
     return bool(luminance.std() > PATTERNED * max(float(luminance.mean()), 1.0))
 
 
-def _pictured(material: PhotoMaterial, picture: UInt8[np.ndarray, "h w 3"]) -> PBRMaterial:
+def _picture(material: PhotoMaterial, picture: UInt8[np.ndarray, "h w 3"]) -> PBRMaterial:
     """The material with its picture; one seen from one side is a photograph, a tiled one bare material."""
     kind = PBRMaterial if material.layout == "tiled" else PhotographedMaterial
     return kind(
@@ -101,7 +101,7 @@ def _pictured(material: PhotoMaterial, picture: UInt8[np.ndarray, "h w 3"]) -> P
 
 def _uv(parts: trimesh.Scene, slot: Slot, name: str, material: PhotoMaterial) -> Float[np.ndarray, "n 2"]:
     if material.layout != "tiled":
-        return rectangle_of(parts, slot, material.layout).uv(placed_vertices(parts, name))
+        return rectangle_of(parts, slot, material.layout).uv(place_vertices(parts, name))
     return metric_uv(parts, slot, name) / material.tile_m
 
 
@@ -118,7 +118,7 @@ def metric_uv(parts: trimesh.Scene, slot: Slot, name: str) -> Float[np.ndarray, 
     mesh = parts.geometry[name]
     if has_metric_uv(parts, slot, name):
         return np.asarray(mesh.visual.uv, dtype=np.float64) * float(slot.tile_m or 1.0)
-    points = placed_vertices(parts, name)
+    points = place_vertices(parts, name)
     corners = points[mesh.faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     axis = np.zeros(len(points), dtype=int)

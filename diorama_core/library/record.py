@@ -12,7 +12,7 @@ import trimesh
 from jaxtyping import Float
 
 from diorama_core.errors import LibraryError
-from diorama_core.io.bounded import parse_json, shortened
+from diorama_core.io.bounded import parse_json, shorten
 from diorama_core.scene.types import FaceName
 from diorama_core.scene.values import ArrayValue, frozen_array
 
@@ -164,7 +164,7 @@ def shape_from_json(text: str) -> Shape:
         row["guess"] = None if row["guess"] is None else _guess_from(row["guess"])
         return Shape(**row)
     except (ValueError, TypeError, KeyError, AttributeError) as error:
-        raise LibraryError(f"a shape record cannot be read ({shortened(str(error))}); {_ADVICE}") from error
+        raise LibraryError(f"a shape record cannot be read ({shorten(str(error))}); {_ADVICE}") from error
 
 
 def _surface_from(row: Mapping[str, Any]) -> SupportSurface:

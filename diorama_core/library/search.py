@@ -281,13 +281,13 @@ def kinds_described(text: str) -> Mapping[str, float]:
     whole = sum(weight.values())
     scores = {}
     for kind, defined in _definitions().items():
-        share = sum(weight[stem] * _met(stem, defined) for stem in asked)
+        share = sum(weight[stem] * _weight(stem, defined) for stem in asked)
         if share > 0:
             scores[kind] = share / whole
     return scores
 
 
-def _met(stem: str, defined: Mapping[str, float]) -> float:
+def _weight(stem: str, defined: Mapping[str, float]) -> float:
     """How far a definition has a word."""
     if stem in defined:
         return defined[stem]

@@ -27,7 +27,7 @@ _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _INDICES, _VERTICES = 34963, 34962
 
 
-def simplified_glb(data: bytes, max_triangles: int) -> bytes:
+def simplify_glb(data: bytes, max_triangles: int) -> bytes:
     """A GLB with about `max_triangles` at most, its materials and pictures as they are.
 
     Models that are light enough, and those with parts this does not know (animations, compressed or sparse data), come
@@ -44,7 +44,7 @@ def simplified_glb(data: bytes, max_triangles: int) -> bytes:
     for part in parts:
         triangles = _array(document, binary, part["indices"]).ravel().astype(np.uint32)
         arrays = {name: _array(document, binary, k) for name, k in part["attributes"].items()}
-        fewer = simplified_triangles(triangles, arrays["POSITION"], max_triangles / total)
+        fewer = simplify(triangles, arrays["POSITION"], max_triangles / total)
         ordered = np.empty_like(fewer)
         meshoptimizer.optimize_vertex_cache(ordered, fewer, len(fewer), len(arrays["POSITION"]))
         used, renumbered = np.unique(ordered, return_inverse=True)
@@ -56,7 +56,7 @@ def simplified_glb(data: bytes, max_triangles: int) -> bytes:
     return written.glb()
 
 
-def simplified_triangles(
+def simplify(
     triangles: np.ndarray,
     positions: np.ndarray,
     share: float,

@@ -117,7 +117,7 @@ def role_of(mesh: trimesh.Trimesh) -> Role:
     return "metal" if (material.metallicFactor or 0.0) >= METALNESS else "material"
 
 
-def matched(slots: Sequence[Slot], materials: Sequence[PhotoMaterial]) -> dict[str, PhotoMaterial]:
+def match(slots: Sequence[Slot], materials: Sequence[PhotoMaterial]) -> dict[str, PhotoMaterial]:
     """The material for every slot that has one: of its own name, main for main, else the first of its role."""
     by_name = {m.slot: m for m in materials}
     main = next((m for m in materials if m.main and _role(m.slot) in SURFACE_ROLES), None)
@@ -148,7 +148,7 @@ def rectangle_of(parts: trimesh.Scene, slot: Slot, layout: TextureLayout) -> Slo
     return SlotRectangle(across * u.min() + up * v.min() + normal * at, across * width, up * height)
 
 
-def placed_vertices(parts: trimesh.Scene, name: str) -> Float[np.ndarray, "n 3"]:
+def place_vertices(parts: trimesh.Scene, name: str) -> Float[np.ndarray, "n 3"]:
     """Vertices of one mesh of a shape's parts, in the shape's frame."""
     return trimesh.transform_points(parts.geometry[name].vertices, transform_of(parts, name))
 
@@ -165,7 +165,7 @@ def _triangles(
     """Points, and unit normals, centres and areas of the triangles of a slot."""
     points, normals, centres, areas = [], [], [], []
     for name in slot.geometry:
-        vertices = placed_vertices(parts, name)
+        vertices = place_vertices(parts, name)
         corners = vertices[parts.geometry[name].faces]
         cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         length = np.linalg.norm(cross, axis=1)

@@ -21,8 +21,8 @@ from scipy.sparse.csgraph import connected_components
 
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.part_notes import notes_of
-from diorama_core.library.slots import placed_vertices, transform_of
-from diorama_core.library.thin_matter import kept_thin_matter
+from diorama_core.library.slots import place_vertices, transform_of
+from diorama_core.library.thin_matter import derive_thin_matter
 
 Scale = tuple[float, float, float]
 EVEN: Scale = (1.0, 1.0, 1.0)
@@ -69,7 +69,7 @@ def relative_scale(scale: Float[np.ndarray, "3"]) -> Scale:
     return x, y, z
 
 
-def stretched_parts(parts: trimesh.Scene, scale: Scale) -> trimesh.Scene:
+def stretch_parts(parts: trimesh.Scene, scale: Scale) -> trimesh.Scene:
     """The shape such that scaling it by `scale` keeps thin parts as thick as they were.
 
     Args:
@@ -79,16 +79,16 @@ def stretched_parts(parts: trimesh.Scene, scale: Scale) -> trimesh.Scene:
     if scale == EVEN:
         return parts
     names = [str(n) for n, m in parts.geometry.items() if isinstance(m, trimesh.Trimesh) and len(m.faces)]
-    whole = trimesh.util.concatenate([_placed(parts, n) for n in names])
+    whole = trimesh.util.concatenate([_place(parts, n) for n in names])
     bodies = _bodies(whole)
     vertices, faces = np.asarray(whole.vertices), np.asarray(whole.faces)
-    maps = [axis_map(vertices, faces, axis, scale[axis], _noted_spans(parts, names, axis)) for axis in range(3)]
-    moved = _moved(vertices, bodies, maps, scale, np.ptp(whole.bounds, axis=0))
+    maps = [axis_map(vertices, faces, axis, scale[axis], _note_spans(parts, names, axis)) for axis in range(3)]
+    moved = _move(vertices, bodies, maps, scale, np.ptp(whole.bounds, axis=0))
     scene, start = parts.copy(), 0
     for name in names:
         mesh = scene.geometry[name]
         end = start + len(mesh.vertices)
-        placed = placed_vertices(parts, name)
+        placed = place_vertices(parts, name)
         back = np.linalg.inv(transform_of(parts, name))
         slopes = np.stack([m.slope(placed[:, a]) for a, m in enumerate(maps)], axis=1)
         normals = np.asarray(parts.geometry[name].vertex_normals) / np.maximum(slopes, 1e-6)
@@ -104,13 +104,13 @@ def stretched_parts(parts: trimesh.Scene, scale: Scale) -> trimesh.Scene:
     return scene
 
 
-def _noted_spans(parts: trimesh.Scene, names: Sequence[str], axis: int) -> list[Span]:
+def _note_spans(parts: trimesh.Scene, names: Sequence[str], axis: int) -> list[Span]:
     """Where bodies of parts with notes lie along an axis; those that keep their size last, since they prevail."""
     spans: list[Span] = []
     for name in names:
         notes = notes_of(parts.geometry[name])
         if notes is not None and notes.stretches is not None:
-            mesh = _placed(parts, name)
+            mesh = _place(parts, name)
             low, high = _bounds(np.asarray(mesh.vertices), _bodies(mesh))
             spans += [(float(a), float(b), notes.stretches[axis]) for a, b in zip(low[:, axis], high[:, axis])]
     return sorted(spans, key=lambda span: not span[2])
@@ -135,7 +135,7 @@ def axis_map(
     low, high = float(vertices[:, axis].min()), float(vertices[:, axis].max())
     if abs(factor - 1.0) < 1e-6 or high - low < 1e-6:
         return AxisMap(np.array([low, high]), np.array([low, high]))
-    thin = kept_thin_matter(vertices, faces, axis, default_cache_dir() / "thin").copy()
+    thin = derive_thin_matter(vertices, faces, axis, default_cache_dir() / "thin").copy()
     for start, end, stretches in noted:
         first, last = (np.array([start, end]) - low) / (high - low) * len(thin)
         thin[int(first + 0.5) : max(int(last + 0.5), int(first + 0.5) + 1)] = 0.0 if stretches else RIGID
@@ -164,7 +164,7 @@ def local_growth(thin: Float[np.ndarray, " bins"], factor: float) -> Float[np.nd
     return np.clip(1.0 + (low + high) / 2 * gives, least, most)
 
 
-def _moved(
+def _move(
     vertices: Float[np.ndarray, "n 3"],
     bodies: Int[np.ndarray, "n"],
     maps: list[AxisMap],
@@ -205,6 +205,6 @@ def _bounds(
     return low, high
 
 
-def _placed(parts: trimesh.Scene, name: str) -> trimesh.Trimesh:
+def _place(parts: trimesh.Scene, name: str) -> trimesh.Trimesh:
     mesh = parts.geometry[name]
-    return trimesh.Trimesh(placed_vertices(parts, name), mesh.faces, process=False)
+    return trimesh.Trimesh(place_vertices(parts, name), mesh.faces, process=False)

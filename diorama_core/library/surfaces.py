@@ -90,7 +90,7 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
         surface = _surface(spots, region, outline)
         if not _is_enclosed(surface, caster):
             surfaces.append(surface)
-    surfaces = _joined(surfaces)
+    surfaces = _join(surfaces)
     return tuple(sorted(surfaces, key=lambda s: (-round(s.height_m, 3), *np.round(s.polygon.mean(axis=0)[:2], 3))))
 
 
@@ -153,14 +153,14 @@ def _regions(spots: _Spots, caster: RayScene) -> list[Int[np.ndarray, "_"]]:
         rows = np.flatnonzero(in_order[at] == wanted)
         pairs.append((order[rows], order[at[rows]]))
     a, b = (np.concatenate(side) for side in zip(*pairs, strict=True))
-    passable = ~_walled_off(spots, caster, a, b)
+    passable = ~_is_walled_off(spots, caster, a, b)
     a, b = a[passable], b[passable]
     graph = coo_matrix((np.ones(len(a)), (a, b)), shape=(n, n))
     count, label = connected_components(graph, directed=False)
     return [_flat_core(spots, np.flatnonzero(label == k)) for k in range(count)]
 
 
-def _walled_off(
+def _is_walled_off(
     spots: _Spots, caster: RayScene, a: Int[np.ndarray, "p"], b: Int[np.ndarray, "p"]
 ) -> Bool[np.ndarray, "p"]:
     """Whether something stands between two spots under a roof: the upright between two compartments of a shelf.
@@ -210,7 +210,7 @@ def _breadth(outline: Float[np.ndarray, "n 2"]) -> float:
     return float(np.ptp(outline @ normals.T, axis=0).min())
 
 
-def _joined(surfaces: list[SupportSurface]) -> list[SupportSurface]:
+def _join(surfaces: list[SupportSurface]) -> list[SupportSurface]:
     """Open surfaces at about one height with only a seam between them become one: the cushions of a seat, a made bed.
 
     What lies on them does not mind the seam, and rests on the higher one. Joined only where the common outline holds
@@ -222,7 +222,7 @@ def _joined(surfaces: list[SupportSurface]) -> list[SupportSurface]:
             common = _common_outline(surfaces[i], surfaces[j])
             if common is not None:
                 rest = [s for k, s in enumerate(surfaces) if k not in (i, j)]
-                return _joined([*rest, common])
+                return _join([*rest, common])
     return surfaces
 
 

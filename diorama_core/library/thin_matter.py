@@ -17,7 +17,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from diorama_core.io.arrays import array_of
-from diorama_core.io.derived import derived
+from diorama_core.io.derived import derive
 
 VERSION = 1
 """Raise it when results change: they are kept on disk."""
@@ -47,7 +47,7 @@ class _Crossings:
     """1 into matter, -1 out of it."""
 
 
-def kept_thin_matter(
+def derive_thin_matter(
     vertices: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"], axis: int, folder: Path
 ) -> Float[np.ndarray, " bins"]:
     """`thin_matter` from its file in a folder, or made now and written: every new process stretches the same shapes.
@@ -62,12 +62,12 @@ def kept_thin_matter(
     content.update(np.ascontiguousarray(vertices, np.float64).tobytes())
     content.update(np.ascontiguousarray(faces, np.int64).tobytes())
 
-    def made() -> bytes:
+    def make() -> bytes:
         data = BytesIO()
         np.save(data, thin_matter(vertices, faces, axis))
         return data.getvalue()
 
-    return derived(folder / f"{content.hexdigest()[:32]}.npy", made, _read)
+    return derive(folder / f"{content.hexdigest()[:32]}.npy", make, _read)
 
 
 def _read(data: bytes) -> Float[np.ndarray, " bins"]:

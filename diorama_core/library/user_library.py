@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.atomic import write_json
-from diorama_core.io.bounded import read_bytes, shortened
+from diorama_core.io.bounded import read_bytes, shorten
 from diorama_core.io.text import clean_text
 from diorama_core.library.catalogue import base_id
 from diorama_core.library.record import Shape, ShapeLibrary
@@ -98,7 +98,7 @@ def _read(path: Path, written_ns: int, size: int, inode: int) -> OwnModels:
     try:
         return OwnModels(**dict(_File.model_validate_json(read_bytes(path, MAX_BYTES, LibraryError))))
     except ValidationError as error:
-        raise LibraryError(f"{path} cannot be read ({shortened(str(error))}); delete it to start again") from error
+        raise LibraryError(f"{path} cannot be read ({shorten(str(error))}); delete it to start again") from error
 
 
 def write_own_models(path: Path, models: OwnModels) -> None:
@@ -135,7 +135,7 @@ class UserLibrary:
 
     def __reduce__(self) -> tuple[Callable[[ShapeLibrary], ShapeLibrary], tuple[ShapeLibrary]]:
         """Other processes get what it holds now; it does not grow there."""
-        return _unchanged, (self._library,)
+        return _identity, (self._library,)
 
     def own(self) -> StoredLibrary:
         """Where uploads are kept, made when there is none yet; raises `LibraryError` when it cannot be written."""
@@ -267,7 +267,7 @@ class OfferedShapes:
         return self._library.glb(shape_id)
 
 
-def offered_shapes(library: ShapeLibrary) -> ShapeLibrary:
+def offer_shapes(library: ShapeLibrary) -> ShapeLibrary:
     """What builds and words choose from; all of a library to which nothing is added.
 
     Raises:
@@ -276,7 +276,7 @@ def offered_shapes(library: ShapeLibrary) -> ShapeLibrary:
     return library.offered() if isinstance(library, UserLibrary) else library
 
 
-def _unchanged(library: ShapeLibrary) -> ShapeLibrary:
+def _identity(library: ShapeLibrary) -> ShapeLibrary:
     return library
 
 

@@ -27,7 +27,7 @@ class Detections:
         return Detections(self.boxes[keep], self.scores[keep], self.labels[keep])
 
 
-def clipped(boxes: Float[np.ndarray, "n 4"], width: int, height: int) -> Float[np.ndarray, "n 4"]:
+def clip(boxes: Float[np.ndarray, "n 4"], width: int, height: int) -> Float[np.ndarray, "n 4"]:
     """Boxes within the picture."""
     return np.clip(boxes, 0, [width, height, width, height])
 
@@ -78,7 +78,7 @@ def without_doubles(detections: Detections, iou: float, *, across_classes: bool)
     return ranked.rows(stays)
 
 
-def joined(parts: Sequence[Detections]) -> Detections:
+def join(parts: Sequence[Detections]) -> Detections:
     """All boxes of all parts, one part after another."""
     return Detections(
         np.concatenate([p.boxes for p in parts]),

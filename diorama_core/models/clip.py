@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Float32, UInt8
 from PIL import Image
 
-from diorama_core.models.images import CLIP_MEAN, CLIP_STD, normalised, resized
+from diorama_core.models.images import CLIP_MEAN, CLIP_STD, normalise, resize
 from diorama_core.models.runtime import SHARED_SESSIONS, Dims, SessionPool
 from diorama_core.models.tokens import clip_tokens, load_tokenizer
 
@@ -81,9 +81,9 @@ def clip_pixels(rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 224
     height, width = rgb.shape[:2]
     scale = SIDE / min(height, width)
     size = (SIDE, int(width * scale)) if height <= width else (int(height * scale), SIDE)
-    small = resized(rgb, size, Image.Resampling.BICUBIC)
+    small = resize(rgb, size, Image.Resampling.BICUBIC)
     top, left = (size[0] - SIDE) // 2, (size[1] - SIDE) // 2
-    return normalised(small[top : top + SIDE, left : left + SIDE], CLIP_MEAN, CLIP_STD)
+    return normalise(small[top : top + SIDE, left : left + SIDE], CLIP_MEAN, CLIP_STD)
 
 
 def unit(vectors: np.ndarray) -> Float32[np.ndarray, "n d"]:

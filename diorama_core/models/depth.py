@@ -16,7 +16,7 @@ from scipy.optimize import minimize_scalar
 
 from diorama_core.errors import UnavailableError
 from diorama_core.geometry.depth_grid import smooth_normals_camera
-from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalised, resized
+from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalise, resize
 from diorama_core.models.runtime import SHARED_SESSIONS, SINGLE, Dims, NetworkError, SessionPool
 from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.scene.types import Intrinsics
@@ -50,7 +50,7 @@ class Moge2:
         height, width = rgb.shape[:2]
         factor = min(1.0, (MAX_PIXELS / (height * width)) ** 0.5)
         small = (max(16, round(height * factor)), max(16, round(width * factor)))
-        picture = resized(rgb, small).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255.0)
+        picture = resize(rgb, small).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255.0)
         session = self.pool.get(self.graph)
         scale = next((n for n in session.outputs if n == "metric_scale"), "scale")
         out = session.run(
@@ -60,13 +60,13 @@ class Moge2:
         )
         known = None if intrinsics is None else intrinsics.scaled(small[1], small[0])
         try:
-            seen = recovered(out["points"][0], out["normal"][0], out["mask"][0], float(np.ravel(out[scale])[0]), known)
+            seen = recover(out["points"][0], out["normal"][0], out["mask"][0], float(np.ravel(out[scale])[0]), known)
         except UnavailableError as error:
             raise NetworkError(self.graph, str(error)) from error
         return resize_depth(seen, height, width)
 
 
-def recovered(
+def recover(
     points: Float[np.ndarray, "h w 3"],
     normals: Float[np.ndarray, "h w 3"],
     validity: Float[np.ndarray, "h w"],
@@ -185,7 +185,7 @@ class Metric3d:
         canvas = np.empty((*self.size, 3), np.float32)
         canvas[:] = (123.675, 116.28, 103.53)
         top, left = (self.size[0] - inner[0]) // 2, (self.size[1] - inner[1]) // 2
-        canvas[top : top + inner[0], left : left + inner[1]] = resized(rgb, inner)
+        canvas[top : top + inner[0], left : left + inner[1]] = resize(rgb, inner)
         return np.ascontiguousarray(canvas.transpose(2, 0, 1)[None]), (top, left, *inner)
 
 
@@ -266,4 +266,4 @@ class DepthAnything3:
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"], side: int = SIDE) -> Float32[np.ndarray, "1 3 side side"]:
         """Stretched to the square, ImageNet statistics."""
-        return normalised(resized(rgb, (side, side)), IMAGENET_MEAN, IMAGENET_STD)
+        return normalise(resize(rgb, (side, side)), IMAGENET_MEAN, IMAGENET_STD)

@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import UnavailableError
-from diorama_core.models.store import derived_graph
+from diorama_core.models.store import derive_graph
 
 FEATURES, CLASSES = 1280, 1000
 SIDE_PX = 224
@@ -45,7 +45,7 @@ def lite0_graph() -> Path:
     """
     weights = _weights()
     name = f"efficientnet-lite0-{_WEIGHTS_SHA256[:12]}-{_GRAPH_VERSION}"
-    return derived_graph(name, lambda: _graph(_read(weights)))
+    return derive_graph(name, lambda: _graph(_read(weights)))
 
 
 def _weights() -> Path:

@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 from jaxtyping import UInt8
 
-from diorama_core.models.images import resized
+from diorama_core.models.images import resize
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.models.seen_depth import SeenDepth
-from diorama_core.models.store import derived_graph
+from diorama_core.models.store import derive_graph
 from diorama_core.scene.types import Intrinsics
 
 SIDE_PX = 224
@@ -45,8 +45,8 @@ class FastDepth:
         """
         height, width = rgb.shape[:2]
         k = intrinsics or Intrinsics(width, height, USUAL_FOCAL * width, USUAL_FOCAL * width, width / 2, height / 2)
-        graph = derived_graph(f"fast-depth-{self.weights}", self._converted)
-        pixels = resized(rgb, (SIDE_PX, SIDE_PX)).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255)
+        graph = derive_graph(f"fast-depth-{self.weights}", self._converted)
+        pixels = resize(rgb, (SIDE_PX, SIDE_PX)).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255)
         shape = (1, 1, SIDE_PX, SIDE_PX)
         seen = self.pool.get(graph).run({"input": np.ascontiguousarray(pixels)}, {"output": shape})["output"]
         small = np.log(np.maximum(seen[0, 0], LEAST_M)) + np.log(k.fx / width / USUAL_FOCAL)

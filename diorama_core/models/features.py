@@ -11,8 +11,8 @@ from jaxtyping import Float32, UInt8
 
 from diorama_core.errors import UnavailableError
 from diorama_core.io.atomic import open_atomically
-from diorama_core.io.bounded import shortened
-from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalised, resized
+from diorama_core.io.bounded import shorten
+from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalise, resize
 from diorama_core.models.runtime import SHARED_SESSIONS, NetworkError, SessionPool
 
 PATCH = 14
@@ -40,7 +40,7 @@ class Dinov2:
         if side % PATCH:
             raise ValueError(f"the side {side} must be a multiple of {PATCH}")
         graph = self.graph if self.block is None else inner_graph(self.graph, self.block)
-        pixels = np.concatenate([normalised(resized(p, (side, side)), IMAGENET_MEAN, IMAGENET_STD) for p in pictures])
+        pixels = np.concatenate([normalise(resize(p, (side, side)), IMAGENET_MEAN, IMAGENET_STD) for p in pictures])
         n, name = side // PATCH, "last_hidden_state"
         out = self.pool.get(graph).run({"pixel_values": pixels}, {name: (len(pictures), 1 + n * n, None)})[name]
         return out[:, 1:].reshape(len(pictures), n, n, -1)
@@ -65,7 +65,7 @@ def inner_graph(graph: Path, block: int) -> Path:
     try:
         model = onnx.load(str(graph))
     except Exception as error:  # protobuf's own, or whatever damaged data leads to
-        reason = shortened(str(error)) or type(error).__name__
+        reason = shorten(str(error)) or type(error).__name__
         raise NetworkError(graph, f"cannot be loaded ({reason}); run: diorama models verify") from error
     sums = _block_outputs([(n.op_type, n.name, list(n.output)) for n in model.graph.node])
     if block not in sums:

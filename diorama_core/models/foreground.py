@@ -9,7 +9,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
-from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, enlarged, normalised, resized
+from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, enlarge, normalise, resize
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 
 SIDE = 1024
@@ -43,11 +43,11 @@ class Foreground:
         out = session.run({session.picture_input: self.pixels(rgb)}, {last: (..., SIDE, SIDE)}, gaps=True)
         logits = out[last].reshape(SIDE, SIDE).astype(np.float32)
         probability = 1.0 / (1.0 + np.exp(-np.clip(logits, -30, 30)))
-        return enlarged(probability.astype(np.float32), rgb.shape[:2])
+        return enlarge(probability.astype(np.float32), rgb.shape[:2])
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 1024 1024"]:
         """Stretched, ImageNet statistics."""
-        return normalised(resized(rgb, (SIDE, SIDE)), IMAGENET_MEAN, IMAGENET_STD)
+        return normalise(resize(rgb, (SIDE, SIDE)), IMAGENET_MEAN, IMAGENET_STD)
 
     def mask(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float = 0.5) -> Bool[np.ndarray, "h w"]:
         """Two passes: what the first one found is painted white, so that the second finds what it had overlooked

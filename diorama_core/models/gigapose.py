@@ -10,7 +10,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Float, Float32, Int, UInt8
 
-from diorama_core.models.images import CLIP_MEAN, CLIP_STD, normalised, resized
+from diorama_core.models.images import CLIP_MEAN, CLIP_STD, normalise, resize
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 
 SIDE = 224
@@ -68,7 +68,7 @@ class GigaPoseScale:
         """Feature maps of crops, each stretched to 224 x 224; normalised as in its training (CLIP's statistics)."""
         session = self.pool.get(self.features)
         name, first = session.picture_input, session.outputs[0]
-        pixels = [normalised(resized(c, (SIDE, SIDE)), CLIP_MEAN, CLIP_STD) for c in crops]
+        pixels = [normalise(resize(c, (SIDE, SIDE)), CLIP_MEAN, CLIP_STD) for c in crops]
         return np.concatenate([session.run({name: p}, {first: (1, None, None, None)})[first] for p in pixels])
 
     def turns(

@@ -12,8 +12,8 @@ import numpy as np
 from jaxtyping import Float32, Int64, UInt8
 from scipy.special import expit
 
-from diorama_core.models.boxes import Detections, clipped, joined
-from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalised, resized
+from diorama_core.models.boxes import Detections, clip, join
+from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalise, resize
 from diorama_core.models.runtime import SHARED_SESSIONS, NetworkError, SessionPool
 from diorama_core.models.tokens import load_tokenizer
 from diorama_core.progress import Progress
@@ -91,7 +91,7 @@ class GroundingDino:
             )
         if not detections:
             return Detections(np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int))
-        every = joined(detections)
+        every = join(detections)
         return every.rows(np.argsort(-every.scores, kind="stable"))
 
     def pixels(
@@ -102,7 +102,7 @@ class GroundingDino:
         scale = side / max(height, width)
         size = (max(1, round(height * scale)), max(1, round(width * scale)))
         square, shown = np.zeros((1, 3, side, side), np.float32), np.zeros((1, side, side), np.int64)
-        square[..., : size[0], : size[1]] = normalised(resized(rgb, size), IMAGENET_MEAN, IMAGENET_STD)
+        square[..., : size[0], : size[1]] = normalise(resize(rgb, size), IMAGENET_MEAN, IMAGENET_STD)
         shown[:, : size[0], : size[1]] = 1
         return square, shown
 
@@ -148,4 +148,4 @@ def _likely_detections(
     keep = np.flatnonzero(scores > threshold)
     centre, half = boxes[keep, :2].astype(np.float64), boxes[keep, 2:].astype(np.float64) / 2
     corners = np.concatenate([centre - half, centre + half], axis=1) * np.array([width, height] * 2)
-    return Detections(clipped(corners, width, height), scores[keep], np.array(prompt.phrases, dtype=int)[best[keep]])
+    return Detections(clip(corners, width, height), scores[keep], np.array(prompt.phrases, dtype=int)[best[keep]])

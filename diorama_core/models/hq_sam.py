@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
 
-from diorama_core.models.images import resized
+from diorama_core.models.images import resize
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
-from diorama_core.models.segment_anything import MASK_SIDE, PromptedMask, fitted_size, unpadded
+from diorama_core.models.segment_anything import MASK_SIDE, PromptedMask, fit_size, unpad
 
 CORNERS = (2.0, 3.0)
 """Labels of the two points that are a box's upper left and lower right corner."""
@@ -33,7 +33,7 @@ class HqSam:
             NetworkError: when a graph is another network's, or fails.
         """
         height, width = rgb.shape[:2]
-        inner = fitted_size(height, width)
+        inner = fit_size(height, width)
         encoder, decoder = self.pool.get(self.encoder), self.pool.get(self.decoder)
         shapes = dict.fromkeys(encoder.outputs, (1, None, None, None))
         features = encoder.run({encoder.first_input: self.pixels(rgb)}, shapes)
@@ -55,9 +55,9 @@ class HqSam:
             count = out["iou_predictions"].size
             decoder.check("low_res_masks", out.get("low_res_masks"), (1, count, MASK_SIDE, MASK_SIDE), gaps=True)
             best = int(out["iou_predictions"][0].argmax())
-            logits = unpadded(out["low_res_masks"][0, best], inner, (height, width))
+            logits = unpad(out["low_res_masks"][0, best], inner, (height, width))
             yield PromptedMask(logits > 0.0, float(np.clip(out["iou_predictions"][0, best], 0.0, 1.0)))
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "h2 w2 3"]:
         """Fitted to 1024 pixels, 0 to 255."""
-        return resized(rgb, fitted_size(*rgb.shape[:2])).astype(np.float32)
+        return resize(rgb, fit_size(*rgb.shape[:2])).astype(np.float32)

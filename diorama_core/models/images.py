@@ -12,7 +12,7 @@ IMAGENET_MEAN, IMAGENET_STD = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
 CLIP_MEAN, CLIP_STD = (0.48145466, 0.4578275, 0.40821073), (0.26862954, 0.26130258, 0.27577711)
 
 
-def resized(
+def resize(
     rgb: UInt8[np.ndarray, "h w 3"], size: tuple[int, int], how: Image.Resampling = Image.Resampling.BILINEAR
 ) -> UInt8[np.ndarray, "h2 w2 3"]:
     """Pillow's resampling to (height, width), which the networks were trained with; OpenCV's differs."""
@@ -21,7 +21,7 @@ def resized(
     return np.asarray(Image.fromarray(rgb).resize((size[1], size[0]), how))
 
 
-def normalised(
+def normalise(
     rgb: UInt8[np.ndarray, "h w 3"] | Float[np.ndarray, "h w 3"],
     mean: tuple[float, float, float],
     std: tuple[float, float, float],
@@ -32,7 +32,7 @@ def normalised(
     return np.ascontiguousarray(centred.transpose(2, 0, 1)[None])
 
 
-def padded_square(rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "s s 3"]:
+def pad_square(rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "s s 3"]:
     """0..1, padded with black at the right and the bottom."""
     height, width = rgb.shape[:2]
     side = max(height, width)
@@ -41,7 +41,7 @@ def padded_square(rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "s s 3
     return square
 
 
-def antialiased(picture: Float32[np.ndarray, "h w 3"], side: int) -> Float32[np.ndarray, "side side 3"]:
+def antialias(picture: Float32[np.ndarray, "h w 3"], side: int) -> Float32[np.ndarray, "side side 3"]:
     """Gaussian blur that suits the reduction, then linear interpolation on pixel areas (scikit-image's resize)."""
     factors = np.array([picture.shape[0] / side, picture.shape[1] / side, 1.0])
     blurred: np.ndarray = ndimage.gaussian_filter(picture, np.maximum(0.0, (factors - 1) / 2), mode="mirror", cval=0)
@@ -49,7 +49,7 @@ def antialiased(picture: Float32[np.ndarray, "h w 3"], side: int) -> Float32[np.
     return np.clip(out, picture.min(), picture.max())
 
 
-def enlarged(values: Float32[np.ndarray, "h w"], size: tuple[int, int]) -> Float32[np.ndarray, "h2 w2"]:
+def enlarge(values: Float32[np.ndarray, "h w"], size: tuple[int, int]) -> Float32[np.ndarray, "h2 w2"]:
     """Linear interpolation by pixel centres to (height, width), as networks' masks are brought to the photo."""
     return cv2.resize(np.ascontiguousarray(values, np.float32), (size[1], size[0]), interpolation=cv2.INTER_LINEAR)
 

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, UInt8
 
-from diorama_core.models.images import resized
+from diorama_core.models.images import resize
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 
 LAMA_SIDE = 512
@@ -42,13 +42,13 @@ class Lama:
         if not hole.any():
             return rgb
         size = (LAMA_SIDE, LAMA_SIDE)
-        image = resized(rgb, size).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255.0)
+        image = resize(rgb, size).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255.0)
         small = cv2.resize(hole.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
         session = self.pool.get(self.graph)
         first = session.outputs[0]
         out = session.run({"image": image, "mask": small[None, None].astype(np.float32)}, {first: (1, 3, *size)})
         filled = np.clip(out[first][0].transpose(1, 2, 0), 0, 255).round().astype(np.uint8)
-        return merged(rgb, resized(filled, rgb.shape[:2]), hole)
+        return merge(rgb, resize(filled, rgb.shape[:2]), hole)
 
 
 @dataclass(frozen=True)
@@ -67,10 +67,10 @@ class Migan:
         session = self.pool.get(self.graph)
         first, image = session.outputs[0], np.ascontiguousarray(rgb.transpose(2, 0, 1)[None])
         out = session.run({"image": image, "mask": keep[None, None]}, {first: (1, 3, *hole.shape)})
-        return merged(rgb, out[first][0].transpose(1, 2, 0).astype(np.uint8), hole)
+        return merge(rgb, out[first][0].transpose(1, 2, 0).astype(np.uint8), hole)
 
 
-def merged(
+def merge(
     rgb: UInt8[np.ndarray, "h w 3"], filled: UInt8[np.ndarray, "h w 3"], hole: Bool[np.ndarray, "h w"]
 ) -> UInt8[np.ndarray, "h w 3"]:
     """The filling inside the holes, fading in over a few pixels there; the rest untouched."""

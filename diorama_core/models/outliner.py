@@ -96,13 +96,13 @@ def own_outliner() -> BoxOutliner:
 
 def window(rgb: UInt8[np.ndarray, "h w 3"], box: Box) -> Float32[np.ndarray, "4 s s"]:
     """The box with its margin, stretched to a square: colours 0 to 1, and where there is a photo at all."""
-    inside = resampled(np.ones(rgb.shape[:2], np.float32), box) > 0.5
-    colours = np.where(inside[..., None], resampled(rgb, box), FILL).astype(np.float32) / np.float32(255)
+    inside = resample(np.ones(rgb.shape[:2], np.float32), box) > 0.5
+    colours = np.where(inside[..., None], resample(rgb, box), FILL).astype(np.float32) / np.float32(255)
     stacked = np.concatenate([colours, inside[..., None].astype(np.float32)], axis=2)
     return np.ascontiguousarray(stacked.transpose(2, 0, 1))
 
 
-def resampled(image: Shaped[np.ndarray, "h w *c"], box: Box) -> Shaped[np.ndarray, "s s *c"]:
+def resample(image: Shaped[np.ndarray, "h w *c"], box: Box) -> Shaped[np.ndarray, "s s *c"]:
     """An image of numbers at the cells of the box's window; 0 outside the photo."""
     left, top, per_x, per_y = _grid(box)
     reach = int(2 + max(per_x, per_y))

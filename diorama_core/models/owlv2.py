@@ -11,8 +11,8 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Float32, Int64, UInt8
 
-from diorama_core.models.boxes import Detections, clipped
-from diorama_core.models.images import CLIP_MEAN, CLIP_STD, antialiased, normalised, padded_square
+from diorama_core.models.boxes import Detections, clip
+from diorama_core.models.images import CLIP_MEAN, CLIP_STD, antialias, normalise, pad_square
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.models.tokens import clip_tokens, load_tokenizer
 from diorama_core.progress import Progress
@@ -101,12 +101,12 @@ class Owlv2:
         keep = keep[np.argsort(-scores[keep], kind="stable")]
         corners = np.concatenate([boxes[:, :2] - boxes[:, 2:] / 2, boxes[:, :2] + boxes[:, 2:] / 2], axis=1)
         in_pixels = corners[keep] * max(height, width)  # boxes are relative to the padded square
-        return Detections(clipped(in_pixels, width, height), scores[keep], labels[keep])
+        return Detections(clip(in_pixels, width, height), scores[keep], labels[keep])
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 side side"]:
         """Padded to a square at the right and bottom, reduced with anti-aliasing, CLIP statistics."""
         side = self.pool.get(self.graph).side_px("pixel_values", self.side)
-        return normalised(antialiased(padded_square(rgb), side), CLIP_MEAN, CLIP_STD)
+        return normalise(antialias(pad_square(rgb), side), CLIP_MEAN, CLIP_STD)
 
     def tokens(self, phrases: Sequence[str]) -> tuple[Int64[np.ndarray, "q 16"], Int64[np.ndarray, "q 16"]]:
         """Token ids, padded with zeros, and which of them are words."""

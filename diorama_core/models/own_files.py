@@ -17,12 +17,12 @@ from scipy.special import softmax
 from diorama_core.errors import InputError
 from diorama_core.geometry.depth_grid import smooth_normals_camera
 from diorama_core.io.bounded import read_bytes
-from diorama_core.models.boxes import Detections, clipped, without_doubles
-from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalised, resized
+from diorama_core.models.boxes import Detections, clip, without_doubles
+from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalise, resize
 from diorama_core.models.runtime import SHARED_SESSIONS, Dims, NetworkError, SessionPool
 from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.models.store import sha256_of
-from diorama_core.models.yolox import COCO_CLASSES, decoded, letterboxed
+from diorama_core.models.yolox import COCO_CLASSES, decode, letterbox
 from diorama_core.scene.types import Intrinsics
 
 SIDE_PX = 640
@@ -76,20 +76,20 @@ class FileDetector:
             boxes, scores = self._yolo(rgb, name, session.side_px(name, SIDE_PX))
         best, labels = scores.max(axis=1), scores.argmax(axis=1)
         keep = np.flatnonzero(best >= threshold)
-        detections = Detections(clipped(boxes[keep], rgb.shape[1], rgb.shape[0]), best[keep], labels[keep])
+        detections = Detections(clip(boxes[keep], rgb.shape[1], rgb.shape[0]), best[keep], labels[keep])
         return without_doubles(detections, iou, across_classes=True)
 
     def _yolo(
         self, rgb: UInt8[np.ndarray, "h w 3"], name: str, side: int
     ) -> tuple[Float[np.ndarray, "n 4"], Float[np.ndarray, "n c"]]:
         session, count = self.pool.get(self.graph), len(self.labels)
-        bgr, scale = letterboxed(rgb, side)
+        bgr, scale = letterbox(rgb, side)
         unit = np.ascontiguousarray(bgr[:, ::-1]) / np.float32(255)
         raw = session.run({name: unit}, {session.outputs[0]: _ANY})[session.outputs[0]]
         raw = _rows(raw)
         if raw.shape == (sum((side // s) ** 2 for s in _STRIDES), 5 + count):  # YOLOX: offsets to cells, other pixels
             raw = session.run({name: bgr}, {session.outputs[0]: (1, *raw.shape)})[session.outputs[0]][0]
-            return decoded(raw, side) / scale, (raw[:, 4:5] * raw[:, 5:]).astype(np.float64)
+            return decode(raw, side) / scale, (raw[:, 4:5] * raw[:, 5:]).astype(np.float64)
         if raw.shape[0] == 4 + count:
             return _corners(raw[:4].T) / scale, raw[4:].T
         if raw.shape[1] == 5 + count:
@@ -100,7 +100,7 @@ class FileDetector:
         self, rgb: UInt8[np.ndarray, "h w 3"], name: str, side: int
     ) -> tuple[Float[np.ndarray, "n 4"], Float[np.ndarray, "n c"]]:
         session, count = self.pool.get(self.graph), len(self.labels)
-        pixels = normalised(resized(rgb, (side, side)), IMAGENET_MEAN, IMAGENET_STD)
+        pixels = normalise(resize(rgb, (side, side)), IMAGENET_MEAN, IMAGENET_STD)
         feeds: dict[str, np.ndarray] = {name: pixels}
         for other in session.inputs:
             if other != name:  # DETR's pixel mask: everything is picture
@@ -156,7 +156,7 @@ class FileDepth:
         session = self.pool.get(self.graph)
         name = session.picture_input
         side = session.side_px(name, SIDE_PX)
-        pixels = resized(rgb, (side, side)).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255)
+        pixels = resize(rgb, (side, side)).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255)
         seen = session.run({name: np.ascontiguousarray(pixels)}, {session.outputs[0]: _ANY}, gaps=True)
         answer = seen[session.outputs[0]]
         small = _rows(answer).astype(np.float32)

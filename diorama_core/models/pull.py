@@ -109,7 +109,7 @@ def _fetch(store: ModelStore, network: Network, file: ModelFile, progress: Progr
         staging.mkdir(parents=True, exist_ok=True)
         meter = _meter(heard, _file_bytes(network, file))
         revision = "" if network.url else _revision(store, network)
-        arrived = _downloaded(network, file, revision, staging, meter)
+        arrived = _download(network, file, revision, staging, meter)
         store.adopt(network, file, arrived, revision)
     progress.report(1.0, name)
 
@@ -181,7 +181,7 @@ def _address(network: Network, file: ModelFile, revision: str) -> tuple[str, dic
     return url, build_hf_headers(library_name="diorama")
 
 
-def _downloaded(network: Network, file: ModelFile, revision: str, staging: Path, meter: type) -> Path:
+def _download(network: Network, file: ModelFile, revision: str, staging: Path, meter: type) -> Path:
     """The whole file beside its place; what an earlier try left there is continued."""
     from huggingface_hub import constants
     from huggingface_hub.file_download import http_get
@@ -224,10 +224,10 @@ def _one_line(store: ModelStore, network: Network) -> Iterator[None]:
     except (UnavailableError, InputError, Cancelled):
         raise
     except Exception as error:  # of the hub, HTTP, sockets or the disk; each is explained
-        raise _explained(store, network, error) from error
+        raise _explain(store, network, error) from error
 
 
-def _explained(store: ModelStore, network: Network, error: Exception) -> UnavailableError:
+def _explain(store: ModelStore, network: Network, error: Exception) -> UnavailableError:
     from huggingface_hub.errors import GatedRepoError, OfflineModeIsEnabled
 
     chain = list(_causes(error))

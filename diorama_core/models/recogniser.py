@@ -19,7 +19,7 @@ from scipy.special import expit, softmax
 from diorama_core.errors import UnavailableError
 from diorama_core.io import assets
 from diorama_core.io.assets import CARD, DETECTOR, NAMER
-from diorama_core.models.boxes import Detections, clipped, joined, without_doubles
+from diorama_core.models.boxes import Detections, clip, join, without_doubles
 from diorama_core.models.images import FILL, box_crop, box_geometry
 from diorama_core.models.kind_evidence import KindEvidence, own_evidence, with_evidence
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
@@ -109,13 +109,13 @@ class Recogniser:
         return self._best(rgb, threshold, most, ALIKE_IOU)
 
     def _best(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int, iou: float) -> Detections:
-        every = joined([look for area in self.areas_px for look in self._proposed(rgb, area)])
+        every = join([look for area in self.areas_px for look in self._proposed(rgb, area)])
         detections = without_doubles(every.rows(every.scores >= threshold), iou, across_classes=True)
         return detections.rows(np.arange(min(most, len(detections))))
 
     def _proposed(self, rgb: UInt8[np.ndarray, "h w 3"], area_px: int) -> list[Detections]:
         """What is seen in the picture at a size, as it is and mirrored."""
-        pixels, scale = fitted(rgb, area_px)
+        pixels, scale = fit(rgb, area_px)
         height, width = pixels.shape[2:]
         end = round(rgb.shape[1] * scale)
         mirrored = np.concatenate([pixels[..., :end][..., ::-1], pixels[..., end:]], axis=3)
@@ -131,7 +131,7 @@ class Recogniser:
             boxes = np.concatenate([centres[best] - reach[:, :2], centres[best] + reach[:, 2:]], axis=1)
             if k == 1:
                 boxes[:, [0, 2]] = end - boxes[:, [2, 0]]
-            inside = clipped(boxes / scale, rgb.shape[1], rgb.shape[0])
+            inside = clip(boxes / scale, rgb.shape[1], rgb.shape[0])
             looks.append(Detections(inside, scores[best], seen[best, 5:].argmax(axis=1)))
         return looks
 
@@ -185,7 +185,7 @@ def own_recogniser() -> Recogniser:
     return replace(alone, evidence=own_evidence(alone.categories))
 
 
-def fitted(rgb: UInt8[np.ndarray, "h w 3"], area_px: int) -> tuple[Float32[np.ndarray, "1 3 h2 w2"], float]:
+def fit(rgb: UInt8[np.ndarray, "h w 3"], area_px: int) -> tuple[Float32[np.ndarray, "1 3 h2 w2"], float]:
     """The picture in about this many pixels, 0 to 1, grey at the right and bottom up to multiples of 32; its scale."""
     height, width = rgb.shape[:2]
     scale = float(np.sqrt(area_px / (width * height)))

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from diorama_core.errors import Cancelled, UnavailableError
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.io.large_libraries import load_onnxruntime
 from diorama_core.progress import Progress
 
@@ -184,7 +184,7 @@ class Session:
 
     def _other(self, seen: str) -> NetworkError:
         return NetworkError(
-            self.info.path, f"this graph is not the expected network ({shortened(seen)}); run: diorama models verify"
+            self.info.path, f"this graph is not the expected network ({shorten(seen)}); run: diorama models verify"
         )
 
 
@@ -321,7 +321,7 @@ def _load(path: Path) -> Session:
 def _reason(error: Exception, path: Path) -> str:
     """What onnxruntime says, without its codes and the path, which every message begins with."""
     message = _CODES.sub("", str(error)).replace(str(path), path.name)
-    return shortened(message) or type(error).__name__
+    return shorten(message) or type(error).__name__
 
 
 def _session(path: Path) -> tuple[Any, str]:

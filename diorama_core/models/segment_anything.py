@@ -10,7 +10,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
-from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, enlarged, normalised, resized
+from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, enlarge, normalise, resize
 from diorama_core.models.runtime import SHARED_SESSIONS, Dims, Session, SessionPool
 
 SIDE, MASK_SIDE = 1024, 256
@@ -56,11 +56,11 @@ class Sam2:
         encoder, decoder = self.pool.get(self.encoder), self.pool.get(self.decoder)
         scale = (self.side / width, self.side / height)
         for out in _answers(encoder, decoder, self.pixels(rgb), boxes, scale, self.mask_side):
-            yield _best(out, lambda logits: enlarged(logits, (height, width)))
+            yield _best(out, lambda logits: enlarge(logits, (height, width)))
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 side side"]:
         """Stretched, with the network's statistics."""
-        return normalised(resized(rgb, (self.side, self.side)), self.mean, self.std)
+        return normalise(resize(rgb, (self.side, self.side)), self.mean, self.std)
 
 
 def sam3_tracker(encoder: Path, decoder: Path, weights: str = "sam3", pool: SessionPool = SHARED_SESSIONS) -> Sam2:
@@ -88,32 +88,32 @@ class SlimSam:
     def masks(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Iterator[PromptedMask]:
         """Masks in the order of the boxes; the picture is encoded once."""
         height, width = rgb.shape[:2]
-        inner = fitted_size(height, width)
+        inner = fit_size(height, width)
         encoder, decoder = self.pool.get(self.encoder), self.pool.get(self.decoder)
         scale = (inner[1] / width, inner[0] / height)
         for out in _answers(encoder, decoder, self.pixels(rgb), boxes, scale, MASK_SIDE):
-            yield _best(out, lambda logits: unpadded(logits, inner, (height, width)))
+            yield _best(out, lambda logits: unpad(logits, inner, (height, width)))
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 1024 1024"]:
         """Fitted, ImageNet statistics, then padded with zeros at the right and bottom."""
-        height, width = fitted_size(*rgb.shape[:2])
+        height, width = fit_size(*rgb.shape[:2])
         square = np.zeros((1, 3, SIDE, SIDE), np.float32)
-        square[..., :height, :width] = normalised(resized(rgb, (height, width)), IMAGENET_MEAN, IMAGENET_STD)
+        square[..., :height, :width] = normalise(resize(rgb, (height, width)), IMAGENET_MEAN, IMAGENET_STD)
         return square
 
 
-def fitted_size(height: int, width: int) -> tuple[int, int]:
+def fit_size(height: int, width: int) -> tuple[int, int]:
     """Height and width when the longer side is 1024."""
     scale = SIDE / max(height, width)
     return int(height * scale + 0.5), int(width * scale + 0.5)
 
 
-def unpadded(
+def unpad(
     logits: Float32[np.ndarray, "256 256"], inner: tuple[int, int], size: tuple[int, int]
 ) -> Float32[np.ndarray, "h w"]:
     """Logits for the padded square, brought to the photo's size."""
-    square = enlarged(logits, (SIDE, SIDE))
-    return enlarged(square[: inner[0], : inner[1]], size)
+    square = enlarge(logits, (SIDE, SIDE))
+    return enlarge(square[: inner[0], : inner[1]], size)
 
 
 def _answers(

@@ -330,7 +330,7 @@ def _digest(path: Path, written_ns: int, size: int) -> str:
     return sha256_of(path)
 
 
-def derived_graph(name: str, make: Callable[[], bytes]) -> Path:
+def derive_graph(name: str, make: Callable[[], bytes]) -> Path:
     """The ONNX graph of this name in the cache folder; made where it is not there.
 
     Args:

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
 
-from diorama_core.models.boxes import Detections, clipped, without_doubles
+from diorama_core.models.boxes import Detections, clip, without_doubles
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 
 _GREY = 114.0
@@ -50,19 +50,19 @@ class Yolox:
         session = self.pool.get(self.graph)
         name, first = session.picture_input, session.outputs[0]
         side = session.side_px(name, 640)
-        pixels, scale = letterboxed(rgb, side)
+        pixels, scale = letterbox(rgb, side)
         cells = sum((side // stride) ** 2 for stride in _STRIDES)
         raw = session.run({name: pixels}, {first: (1, cells, 5 + len(COCO_CLASSES))})[first][0]
-        boxes = decoded(raw, side) / scale
+        boxes = decode(raw, side) / scale
         scores = raw[:, 4:5] * raw[:, 5:]
         labels = scores.argmax(axis=1)
         best = scores[np.arange(len(scores)), labels]
         keep = np.flatnonzero(best >= threshold)
-        detections = Detections(clipped(boxes[keep], rgb.shape[1], rgb.shape[0]), best[keep], labels[keep])
+        detections = Detections(clip(boxes[keep], rgb.shape[1], rgb.shape[0]), best[keep], labels[keep])
         return without_doubles(detections, iou, across_classes=across_classes)
 
 
-def letterboxed(rgb: UInt8[np.ndarray, "h w 3"], side: int) -> tuple[Float32[np.ndarray, "1 3 side side"], float]:
+def letterbox(rgb: UInt8[np.ndarray, "h w 3"], side: int) -> tuple[Float32[np.ndarray, "1 3 side side"], float]:
     """BGR 0..255 in the upper left of a grey square, and how much the picture was scaled."""
     height, width = rgb.shape[:2]
     scale = min(side / height, side / width)
@@ -72,7 +72,7 @@ def letterboxed(rgb: UInt8[np.ndarray, "h w 3"], side: int) -> tuple[Float32[np.
     return np.ascontiguousarray(square.transpose(2, 0, 1)[None]), scale
 
 
-def decoded(raw: Float[np.ndarray, "n 85"], side: int) -> Float[np.ndarray, "n 4"]:
+def decode(raw: Float[np.ndarray, "n 85"], side: int) -> Float[np.ndarray, "n 4"]:
     """Corner boxes in network pixels from offsets to grid cells and logarithms of sizes."""
     cells, strides = [], []
     for stride in _STRIDES:

@@ -21,7 +21,7 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import megabytes, read_json, shortened
+from diorama_core.io.bounded import megabytes, read_json, shorten
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.multiview.camera_changes import quarters_of
 from diorama_core.multiview.lens import STRAIGHT, Lens
@@ -86,10 +86,10 @@ def read_poses(path: Path, photos: Sequence[Path] = ()) -> Poses:
     try:
         poses = reader(path)
     except KeyError as error:
-        missing = shortened(str(error.args[0]) if error.args else "")
+        missing = shorten(str(error.args[0]) if error.args else "")
         raise InputError(f"{path}: the cameras cannot be read: there is no {missing!r}; export them again") from error
     except (LookupError, ValueError, TypeError, AttributeError, ArithmeticError, struct.error, OSError) as error:
-        raise InputError(f"{path}: the cameras cannot be read ({shortened(str(error))}); export them again") from error
+        raise InputError(f"{path}: the cameras cannot be read ({shorten(str(error))}); export them again") from error
     if not poses.photos:
         raise InputError(f"{path} holds no camera")
     return poses

@@ -20,7 +20,7 @@ from diorama_core.architecture.walls.settings import SETTINGS as WALLS
 from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox, Photo
 from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.geometry.segments import line_segments_px
-from diorama_core.geometry.sphere import directions, level_axes, perspective, sampled
+from diorama_core.geometry.sphere import directions, level_axes, perspective, sample
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category, is_furniture
 from diorama_core.multiview.joining import RoomPhoto, Track
@@ -143,7 +143,7 @@ def build_sphere(
     if not boxes:
         things = _found(pictures, choose, progress.part(0.03, 0.12))
     progress.report(0.12, "looking for the room's borders all round")
-    border = room_on_sphere(sampled(photo.rgb, directions(LEVEL_WIDTH_PX) @ R), occluders(things))
+    border = room_on_sphere(sample(photo.rgb, directions(LEVEL_WIDTH_PX) @ R), occluders(things))
     read, sightings, height_m = _read(pictures, things, border, choose, progress.part(0.15, 0.3), camera_height_m)
     room_photos = [said_alone(r) for r in read]
     shown = [(thing, seen) for thing, seen in zip(things, sightings, strict=True) if seen]

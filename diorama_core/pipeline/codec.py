@@ -20,7 +20,7 @@ from diorama_core import artefacts, provenance
 from diorama_core.errors import ProjectError
 from diorama_core.geometry import rotations
 from diorama_core.io.arrays import array_of, entry
-from diorama_core.io.bounded import as_member, field_types, fits, parse_json, shortened
+from diorama_core.io.bounded import as_member, field_types, fits, parse_json, shorten
 from diorama_core.io.text import clean_strings
 from diorama_core.scene import light_settings, types
 
@@ -110,7 +110,7 @@ def load(data: bytes, expected: Any = Any) -> Any:
         if not fits(value, type(value)) or not fits(value, expected):
             raise ValueError("a value of another kind than it states")
     except Exception as error:  # damaged bytes make zip, number and class raise almost anything; it means the same
-        reason = shortened(str(error), 120) or type(error).__name__
+        reason = shorten(str(error), 120) or type(error).__name__
         raise ProjectError(f"a saved stage result is damaged ({reason}); it will be computed again") from error
     return value
 

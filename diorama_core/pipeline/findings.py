@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from diorama_core.artefacts import ArchitectureEstimate, CameraEstimate, ObjectGeometry, SceneGraph
-from diorama_core.geometry.projection import box_edges, plane_edges, seen_segments
+from diorama_core.geometry.projection import box_edges, plane_edges, visible_segments
 from diorama_core.progress import Segments
 from diorama_core.provenance import (
     AttitudeSource,
@@ -43,7 +43,7 @@ def drawing(name: str, known: Mapping[str, Any]) -> Segments:
         edges = [plane_edges(p) for p in artefact.architecture.planes if p.seen]
     else:
         return ()
-    lines = np.round(seen_segments(camera, edges).reshape(-1, 4), 1)
+    lines = np.round(visible_segments(camera, edges).reshape(-1, 4), 1)
     return tuple((x1, y1, x2, y2) for x1, y1, x2, y2 in lines.tolist())
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from diorama_core.artefacts import FurtherPhoto
 from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import write_atomically, write_document, write_json
-from diorama_core.io.bounded import read_bytes, read_json, shortened
+from diorama_core.io.bounded import read_bytes, read_json, shorten
 from diorama_core.pipeline import codec
 from diorama_core.project.storage import Project, jpeg
 from diorama_core.scene.types import Plane, Pose, Scene, SceneObject
@@ -71,7 +71,7 @@ def load_photos(project: Project) -> tuple[tuple[FurtherPhoto, ...], tuple[str, 
 def _photo_of(data: bytes, name: str) -> FurtherPhoto:
     photo: FurtherPhoto = codec.load(data, FurtherPhoto)
     if photo.name != name:  # which names the files that are written
-        raise ProjectError(f"it is the photo {shortened(photo.name)!r}")
+        raise ProjectError(f"it is the photo {shorten(photo.name)!r}")
     return photo
 
 
@@ -81,18 +81,18 @@ def note_placed(project: Project, scene: Scene) -> None:
     Raises:
         ProjectError: the folder cannot be written.
     """
-    known = _noted(project, "placed.json")
+    known = _notes(project, "placed.json")
     now = {o.id: _with(_row(o.pose), known.get(o.id, [])) for o in scene.objects}
     now |= {PLANE + p.id: _with(_corners(p), known.get(PLANE + p.id, [])) for p in scene.architecture.planes}
     write_json(project.stages_folder / "placed.json", {**known, **now}, ProjectError, most=MAX_NOTED_BYTES)
-    looks = _noted(project, "looks.json")
+    looks = _notes(project, "looks.json")
     made = {o.id: _with(_look(o), looks.get(o.id, [])) for o in scene.objects}
     write_json(project.stages_folder / "looks.json", {**looks, **made}, ProjectError, most=MAX_NOTED_BYTES)
 
 
 def still_placed(project: Project, scene: Scene) -> frozenset[str]:
     """Ids of the objects and planes that are where the program put them, not locked; none where none were noted."""
-    known = _noted(project, "placed.json")
+    known = _notes(project, "placed.json")
     objects = [o.id for o in scene.objects if not o.locked and _is_at(_row(o.pose), known.get(o.id, ()))]
     planes = [p.id for p in scene.architecture.planes if _is_at(_corners(p), known.get(PLANE + p.id, ()))]
     return frozenset((*objects, *planes))
@@ -100,11 +100,11 @@ def still_placed(project: Project, scene: Scene) -> frozenset[str]:
 
 def still_made(project: Project, scene: Scene) -> frozenset[str]:
     """Ids of the objects that have the shape and the colours that the program gave them, and are not locked."""
-    known = _noted(project, "looks.json")
+    known = _notes(project, "looks.json")
     return frozenset(o.id for o in scene.objects if not o.locked and _look(o) in known.get(o.id, ()))
 
 
-def _noted(project: Project, name: str) -> dict[str, list[list[Any]]]:
+def _notes(project: Project, name: str) -> dict[str, list[list[Any]]]:
     """What was noted, by id; nothing where the file is damaged: then everything is as a person left it, and stays."""
     path = project.stages_folder / name
     if not path.exists():

@@ -17,7 +17,7 @@ from filelock import FileLock, Timeout
 
 from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import write_json
-from diorama_core.io.bounded import read_json, shortened
+from diorama_core.io.bounded import read_json, shorten
 
 LOCK = ".diorama.lock"
 OWNER = ".diorama-owner.lock"
@@ -87,7 +87,7 @@ def owner(folder: Path) -> str:
     try:
         about = read_json(folder / OWNER, ProjectError, most=MAX_OWNER_BYTES)
         words = f"{about['what']} of {about['who']} on {about['host']} (process {about['process']}, {about['since']})"
-        return shortened(words, MAX_OWNER)
+        return shorten(words, MAX_OWNER)
     except (ProjectError, LookupError, TypeError):
         return "another program"
 

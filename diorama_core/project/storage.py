@@ -23,7 +23,7 @@ from PIL import Image
 from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import ProjectError, SceneError
 from diorama_core.io.atomic import write_atomically, write_document, write_json
-from diorama_core.io.bounded import MAX_JSON_BYTES, parse_json, read_bytes, read_picture, shortened
+from diorama_core.io.bounded import MAX_JSON_BYTES, parse_json, read_bytes, read_picture, shorten
 from diorama_core.io.text import file_label
 from diorama_core.library.library_names import BUILT_IN, ESCAPED_PLUS
 from diorama_core.pipeline import codec
@@ -93,8 +93,8 @@ class Project:
     def name(self) -> str:
         """What people call the project."""
         name = self.info().get("name")
-        given = shortened(name, MAX_NAME) if isinstance(name, str) else ""
-        return given or shortened(file_label(self.folder.name), MAX_NAME)
+        given = shorten(name, MAX_NAME) if isinstance(name, str) else ""
+        return given or shorten(file_label(self.folder.name), MAX_NAME)
 
     @property
     def library_name(self) -> str:

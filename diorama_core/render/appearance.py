@@ -19,9 +19,9 @@ from trimesh.visual.material import PBRMaterial
 
 from diorama_core.geometry.vectors import cross, dot, unique_rows, unit
 from diorama_core.io.cache import LruCache
-from diorama_core.library.paint import painted
+from diorama_core.library.paint import repaint
 from diorama_core.library.photo_materials import PhotographedMaterial, Pictures, with_photo_materials
-from diorama_core.library.stretch import EVEN, Scale, stretched_parts
+from diorama_core.library.stretch import EVEN, Scale, stretch_parts
 from diorama_core.scene.types import Finish, PhotoMaterial
 
 Colour = tuple[float, float, float]
@@ -95,7 +95,7 @@ def shape_surfaces(
     Args:
         library: Where the shape is.
         shape_id: Which shape; `LibraryError` when unknown.
-        colour_srgb: Override of the main material's colour; see `library.paint.painted`.
+        colour_srgb: Override of the main material's colour; see `library.paint.repaint`.
         finish: Override of how it throws light back, likewise.
         materials: From the photo, over both where they match a slot.
         pictures: Their textures by name; a name always means the same picture.
@@ -135,8 +135,8 @@ def _cached_surfaces(
     """The surfaces of a scene of parts, read once while the same scene object keeps being asked for."""
 
     def read() -> tuple[trimesh.Scene, tuple[Surface, ...]]:
-        shown = stretched_parts(parts, scale)
-        shown = shown if paint == (None, None) else painted(shown, *paint)
+        shown = stretch_parts(parts, scale)
+        shown = shown if paint == (None, None) else repaint(shown, *paint)
         shown = with_photo_materials(shown, materials, pictures) if materials else shown
         # Caching the scene, too, keeps its id from being given to another.
         return parts, tuple(s for s in _read_parts(shown) if len(s.faces))
@@ -191,7 +191,7 @@ def _split(
     form = _digest(points) + _digest(faces)
     key = b"".join([form, *(b"-" if column is None else _digest(column) for column in (uv, colours))])
 
-    def made() -> tuple[np.ndarray, np.ndarray]:
+    def make() -> tuple[np.ndarray, np.ndarray]:
         corners = faces.reshape(-1)
         columns = [points[corners], _NORMALS.get(form, lambda: smooth_corner_normals(points, faces))]
         columns += [uv[corners]] if uv is not None else []
@@ -200,7 +200,7 @@ def _split(
         first, index = unique_rows(rounded)
         return rounded[first].astype(np.float32), index.reshape(-1, 3).astype(np.int32)
 
-    return _SPLIT.get(key, made)
+    return _SPLIT.get(key, make)
 
 
 def _digest(array: np.ndarray) -> bytes:

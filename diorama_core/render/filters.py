@@ -41,7 +41,7 @@ class Neighbours:
         for dy in range(-half, half + 1):
             for dx in range(-half, half + 1):
                 share = (0.5 if abs(dy) == half else 1.0) * (0.5 if abs(dx) == half else 1.0)
-                here, shifted = _shifted(is_hit.shape, dy, dx)
+                here, shifted = _shift(is_hit.shape, dy, dx)
                 leave = np.abs(dot(points[shifted] - points[here], normals[here]))
                 turn = dot(normals[here], normals[shifted])
                 same = is_hit[shifted] & (leave < tolerance_m[here]) & (turn > 0.85)
@@ -56,12 +56,12 @@ class Neighbours:
         channels = np.ascontiguousarray(np.moveaxis(light, -1, 0))
         gathered = np.zeros_like(channels)
         for dy, dx, weight in self.weights:
-            here, shifted = _shifted(weight.shape, dy, dx)
+            here, shifted = _shift(weight.shape, dy, dx)
             gathered[:, here[0], here[1]] += weight[here] * channels[:, shifted[0], shifted[1]]
         return np.ascontiguousarray(np.moveaxis(gathered / self.total, 0, -1))
 
 
-def _shifted(shape: tuple[int, ...], dy: int, dx: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
+def _shift(shape: tuple[int, ...], dy: int, dx: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
     """Slices of the pixels that have a neighbour at an offset, and of those neighbours."""
     (h, w) = shape
     rows, columns = slice(max(0, -dy), min(h, h - dy)), slice(max(0, -dx), min(w, w - dx))

@@ -27,7 +27,7 @@ ALONE = Effort(window_rays=5, sky_rays=9)
 """Rays of a pixel that gathers for itself and has no neighbours to share samples with."""
 
 
-def fallen_light(
+def gather_light(
     world: World, blockers: RayScene, grid: Grid, light: Lighting, effort: Effort, progress: Progress = SILENT
 ) -> Light:
     """Light on every place of a grid; 0 where nothing is seen.
@@ -50,7 +50,7 @@ def fallen_light(
             "gathering light",
         )
     )
-    gathered = map_threads(lambda band: _gathered(noisy, coarse, band), rows)
+    gathered = map_threads(lambda band: _gather(noisy, coarse, band), rows)
     smooth, sure = (np.concatenate([pair[k] for pair in gathered]) for k in (0, 1))
     spread = map_threads(lambda band: _spread(smooth, sure, coarse, grid, band), rows)
     fallen, known = (np.concatenate([pair[k] for pair in spread]) for k in (0, 1))
@@ -73,7 +73,7 @@ def _noisy(world: World, blockers: RayScene, grid: Grid, rows: slice, light: Lig
     return noisy
 
 
-def _gathered(
+def _gather(
     noisy: Light, grid: Grid, rows: slice
 ) -> tuple[Float32[np.ndarray, "rows w 3"], Bool[np.ndarray, "rows w"]]:
     """Light of some rows without its noise, gathered over blocks from the rows and those around them.

@@ -57,7 +57,7 @@ def as_lit(item: SceneObject, surfaces: tuple[Surface, ...], scene: Scene) -> tu
     if item.category in LAMP_LUMENS:
         if settings.lamps_on is None:
             return surfaces
-        return _shaded(surfaces) if item.id in settings.lamps_on else _glowing(surfaces, np.zeros(3))
+        return _light_shade(surfaces) if item.id in settings.lamps_on else _glowing(surfaces, np.zeros(3))
     if item.category in OPENING_CATEGORIES and settings.hour is not None:
         return _glowing(surfaces, PANE_GLOW * daylight(settings.hour, settings.north_rad).sky)
     return surfaces
@@ -80,7 +80,7 @@ def shade_of(surfaces: tuple[Surface, ...]) -> Surface | None:
     return None if shade.material.metallic >= 0.5 else shade
 
 
-def _shaded(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
+def _light_shade(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
     """Surfaces of a lamp that shines: its shade glows."""
     shade = shade_of(surfaces)
     if shade is None:

@@ -77,7 +77,7 @@ def picture(
     light = light or lit_world
     shot = shoot(world, blockers, source, light, effort, progress.part(0.1, 1.0))
     exposure = np.float32(scene.light_settings.exposure)
-    return np.concatenate(map_threads(lambda band: _developed(shot, band, exposure), bands(source.height)))
+    return np.concatenate(map_threads(lambda band: _develop(shot, band, exposure), bands(source.height)))
 
 
 def lit(scene: Scene, opened: Scene, library: ShapeLibrary, world: World, view: View) -> tuple[Lighting, RayScene]:
@@ -122,7 +122,7 @@ def scene_lighting(scene: Scene, world: World, view: View) -> Lighting:
     return studio(bounds, -_axis(view)) if scene.light is None else room_lighting(bounds, scene.light)
 
 
-def _developed(shot: Shot, rows: slice, exposure: np.float32) -> UInt8[np.ndarray, "rows w 3"]:
+def _develop(shot: Shot, rows: slice, exposure: np.float32) -> UInt8[np.ndarray, "rows w 3"]:
     """Some rows of the finished picture, the background behind what is seen."""
     coverage = shot.coverage[rows][..., None]
     radiance = shot.radiance[rows] / np.maximum(coverage, 1e-3) * exposure

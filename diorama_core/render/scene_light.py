@@ -10,14 +10,14 @@ from jaxtyping import Float
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.geometry.sun import Daylight, daylight
-from diorama_core.geometry.unseen_walls import closed_room
+from diorama_core.geometry.unseen_walls import close_room
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import relative_scale
 from diorama_core.render.appearance import Material, Surface, shape_surfaces
 from diorama_core.render.direct_light import DirectLight, LampLight, SunLight
 from diorama_core.render.lamps import LAMP_LUMENS, WARM, lamp_place, shining_lamps
 from diorama_core.render.lighting import Lighting
-from diorama_core.render.world import World, placed_surfaces
+from diorama_core.render.world import World, place_surfaces
 from diorama_core.scene.types import Scene, SceneObject
 
 SUN_STRENGTH = 4.5
@@ -48,7 +48,7 @@ def with_settings(base: Lighting, scene: Scene, library: ShapeLibrary, bounds: F
         return base
     light = base if outside is None else _daytime(scene, outside, bounds)
     index = {o.id: number for number, o in enumerate(scene.objects)}
-    blockers = _blockers(closed_room(scene), library, without={index[o.id] for o in lamps})
+    blockers = _blockers(close_room(scene), library, without={index[o.id] for o in lamps})
     direct: list[DirectLight] = [_lamp(o, library, blockers) for o in lamps]
     if outside is not None and outside.sun.any():
         direct.append(SunLight(outside.direction, SUN_STRENGTH * outside.sun, blockers))
@@ -88,7 +88,7 @@ def _daytime(scene: Scene, outside: Daylight, bounds: Float[np.ndarray, "2 3"]) 
 
 def _blockers(scene: Scene, library: ShapeLibrary, without: set[int]) -> RayScene:
     """Objects, walls and the ceiling, without what lets light through: panes, clear glass, and lamps that shine."""
-    placed = [p for p in placed_surfaces(scene, library) if p.instance not in without]
+    placed = [p for p in place_surfaces(scene, library) if p.instance not in without]
     panes = {number for number, o in enumerate(scene.objects) if o.category in OPENING_CATEGORIES}
     return World(
         [replace(p, surfaces=tuple(_bare(s) for s in _solid(p.surfaces, window=p.instance in panes))) for p in placed]

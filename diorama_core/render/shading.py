@@ -11,7 +11,7 @@ from diorama_core.geometry.ray_scene import RayArray, RayScene
 from diorama_core.geometry.vectors import dot, unit
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.filters import tone_mapped
-from diorama_core.render.gathering import fallen_light
+from diorama_core.render.gathering import gather_light
 from diorama_core.render.gloss import gloss_share
 from diorama_core.render.lighting import Effort, Lighting, ambient, unshadowed
 from diorama_core.render.raycast import Grid, View, bands, pixel_centres, pixel_footprint
@@ -55,9 +55,9 @@ def shoot(
     rows = bands(view.height)
     parts = map_threads(lambda band: _first_sight(world, view, band), rows, progress.part(0.0, 0.15), "casting rays")
     grid = _grid(parts, view)
-    fallen = fallen_light(world, blockers, grid, light, effort, progress.part(0.15, 0.6))
+    fallen = gather_light(world, blockers, grid, light, effort, progress.part(0.15, 0.6))
     seen = map_threads(
-        lambda pair: _seen(world, pair[1].places, pair[1].rays, fallen[pair[0]][pair[1].found], light),
+        lambda pair: _radiance(world, pair[1].places, pair[1].rays, fallen[pair[0]][pair[1].found], light),
         list(zip(rows, parts, strict=True)),
         progress.part(0.6, 0.8),
         "shading",
@@ -81,7 +81,7 @@ def light_map(
         effort: Rays.
     """
     parts = map_threads(lambda band: _first_sight(world, view, band), bands(view.height))
-    return fallen_light(world, blockers, _grid(parts, view), light, effort, Progress())
+    return gather_light(world, blockers, _grid(parts, view), light, effort, Progress())
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +103,7 @@ def _first_sight(world: World, view: View, rows: slice) -> _Band:
     return _Band(is_hit, rays[is_hit], places, np.where(is_hit, hits.distance, 0).astype(np.float32))
 
 
-def _seen(
+def _radiance(
     world: World, places: Places, rays: RayArray, fallen: Float32[np.ndarray, "n 3"], light: Lighting, depth: int = 0
 ) -> Float32[np.ndarray, "n 3"]:
     """Light that leaves places toward the viewer: diffuse, gloss, glow, and what shines through glass."""
@@ -191,7 +191,7 @@ def _beyond(
     if len(hit_rows):
         behind = world.places(onward[hit_rows], hits.chosen(hit_rows))
         fallen = unshadowed(behind.points, behind.normals, light)
-        seen[hit_rows] = _seen(world, behind, onward[hit_rows], fallen, light, depth + 1)
+        seen[hit_rows] = _radiance(world, behind, onward[hit_rows], fallen, light, depth + 1)
     return seen
 
 
@@ -205,7 +205,7 @@ def _with_smooth_edges(
         return shot
     groups = np.array_split(pixels, 1 + len(pixels) // 4096)
     again = map_threads(
-        lambda group: _seen_again(world, view, light, grid, fallen, group), groups, progress, "smoothing edges"
+        lambda group: _resample(world, view, light, grid, fallen, group), groups, progress, "smoothing edges"
     )
     radiance, coverage = np.minimum(shot.radiance, BRIGHTEST), shot.coverage.copy()
     at, weight = (pixels[:, 0], pixels[:, 1]), 1 / (1 + len(_SUBPIXELS))
@@ -214,7 +214,7 @@ def _with_smooth_edges(
     return Shot(radiance, coverage, grid)
 
 
-def _seen_again(
+def _resample(
     world: World,
     view: View,
     light: Lighting,
@@ -229,9 +229,9 @@ def _seen_again(
     hit_rows = np.flatnonzero(hits.found)
     chosen = hits.chosen(hit_rows)
     places = world.places(rays[hit_rows], chosen, pixel_footprint(view, chosen.distance[:, None])[:, 0])
-    borrowed = _borrowed(places, np.repeat(pixels, count, axis=0)[hit_rows], grid, fallen)
+    borrowed = _borrow(places, np.repeat(pixels, count, axis=0)[hit_rows], grid, fallen)
     seen = np.zeros((len(rays), 3), np.float32)
-    seen[hit_rows] = np.minimum(_seen(world, places, rays[hit_rows], borrowed, light), BRIGHTEST)
+    seen[hit_rows] = np.minimum(_radiance(world, places, rays[hit_rows], borrowed, light), BRIGHTEST)
     share = hits.found.reshape(-1, count).mean(axis=1)
     return seen.reshape(-1, count, 3).mean(axis=1), share.astype(np.float32)
 
@@ -258,7 +258,7 @@ def _edges(shot: Shot, rows: slice) -> Bool[np.ndarray, "rows w"]:
     return edge[rows.start - near.start : rows.stop - near.start]
 
 
-def _borrowed(
+def _borrow(
     places: Places, near: Int[np.ndarray, "n 2"], grid: Grid, fallen: Float32[np.ndarray, "h w 3"]
 ) -> Float32[np.ndarray, "n 3"]:
     """For places seen between pixels, the light on the best-fitting of the pixel and its four neighbours."""

@@ -35,7 +35,7 @@ def plane_surfaces(
     plain = _plain_material(plane)
     bare = plane.finish is None
     face = replace(plain, photographed=plain_photographed and bare)
-    face = face if texture is None else _textured(plane, texture, photographed and bare)
+    face = face if texture is None else _material(plane, texture, photographed and bare)
     front = _surface(polygon, inner, plane.normal, face, plane_uv(plane))
     ring = np.arange(count)
     after = np.roll(ring, -1)
@@ -78,6 +78,6 @@ def _plain_material(plane: Plane) -> Material:
     return Material(name=plane.role, colour=(red, green, blue), roughness=0.6 if plane.role == "floor" else 0.95)
 
 
-def _textured(plane: Plane, texture: UInt8[np.ndarray, "h w c"], photographed: bool) -> Material:
+def _material(plane: Plane, texture: UInt8[np.ndarray, "h w c"], photographed: bool) -> Material:
     name, white = f"{plane.role} {plane.id}", (1.0, 1.0, 1.0)
     return Material(name=name, colour=white, roughness=0.8, texture=texture, photographed=photographed)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from PIL import Image
 
 from diorama_core.io.cache import LruCache
-from diorama_core.io.derived import derived
+from diorama_core.io.derived import derive
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.progress import SILENT, Progress
@@ -45,10 +45,10 @@ def thumbnail(
     """
     shape = record_of(library, shape_id)
     if not shape.content_hash or paint != (None, None):
-        return _CACHE.get(f"{id(library)} {shape_id} {size} {paint}", lambda: _rendered(library, shape_id, size, paint))
+        return _CACHE.get(f"{id(library)} {shape_id} {size} {paint}", lambda: _render(library, shape_id, size, paint))
     name = f"{shape.content_hash}-{_VERSION}-{size}.png"
     path = (folder or default_cache_dir() / "thumbnails") / name
-    return _CACHE.get(name, lambda: derived(path, lambda: _rendered(library, shape_id, size), _whole_png))
+    return _CACHE.get(name, lambda: derive(path, lambda: _render(library, shape_id, size), _whole_png))
 
 
 def _whole_png(data: bytes) -> bytes:
@@ -85,7 +85,7 @@ def shape_sheet(
     return contact_sheet(shapes, picture, size, columns)
 
 
-def _rendered(library: ShapeLibrary, shape_id: str, size: int, paint: Paint = (None, None)) -> bytes:
+def _render(library: ShapeLibrary, shape_id: str, size: int, paint: Paint = (None, None)) -> bytes:
     from diorama_core.render.views import render_shape  # a second to load, and pictures that are kept do without
 
     buffer = io.BytesIO()

@@ -82,17 +82,17 @@ def outline_and_edges(
     box = _box(mask)
     if box is None:
         return None
-    covered = _squared(mask.astype(np.float32), box, cv2.BORDER_CONSTANT)
-    brightness = _squared(np.where(mask, gray, gray[mask].mean()).astype(np.float32), box, cv2.BORDER_REPLICATE)
+    covered = _square(mask.astype(np.float32), box, cv2.BORDER_CONSTANT)
+    brightness = _square(np.where(mask, gray, gray[mask].mean()).astype(np.float32), box, cv2.BORDER_REPLICATE)
     return _unit(_outline(covered)), _unit(_edges(brightness, covered))
 
 
-def squared_around(
+def square_around(
     mask: Bool[np.ndarray, "h w"], picture: Float32[np.ndarray, "h w *c"]
 ) -> Float32[np.ndarray, "s s *c"] | None:
     """A picture in the small square around what a mask covers, 0 outside the picture; None for an empty mask."""
     box = _box(mask)
-    return None if box is None else _squared(picture, box, cv2.BORDER_CONSTANT)
+    return None if box is None else _square(picture, box, cv2.BORDER_CONSTANT)
 
 
 def window_around(mask: Bool[np.ndarray, "h w"]) -> tuple[slice, slice] | None:
@@ -125,7 +125,7 @@ def colour_feature(palette: Palette) -> Float[np.ndarray, "c"]:
     return np.sqrt(shares / shares.sum())
 
 
-def _squared(
+def _square(
     picture: Float32[np.ndarray, "h w *c"], box: tuple[int, int, int, int], border: int
 ) -> Float32[np.ndarray, "s s *c"]:
     """The square around a box, with a margin, resized; `border` tells what lies outside the picture."""
@@ -201,7 +201,7 @@ def colour_layout(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]
     lab = cv2.cvtColor(rgb[window].astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)
     picture = np.zeros((*mask.shape, 4), np.float32)
     picture[window] = np.where(mask[window][..., None], np.dstack([lab, np.ones_like(lab[..., 0])]), 0)
-    square = squared_around(mask, picture)
+    square = square_around(mask, picture)
     assert square is not None
     cells = cv2.resize(square, (CELLS, CELLS), interpolation=cv2.INTER_AREA).reshape(-1, 4)
     cells[:, :3] /= np.maximum(cells[:, 3:], 1e-3)
@@ -220,7 +220,7 @@ def layout_agreement(seen: Float[np.ndarray, "width"], views: Float[np.ndarray, 
     return np.where(total >= _MIN_SHARED, np.exp(-apart / _TOLERANCE), _NOTHING_KNOWN)
 
 
-def painted_views(
+def paint_views(
     templates: Templates, face_ids: Int32[np.ndarray, "v h w"], appearance: ShapeAppearance
 ) -> UInt8[np.ndarray, "v h w 3"]:
     """Templates in the shape's own colours, in the light of the templates; gray where it has none, black around it."""

@@ -121,7 +121,7 @@ def _shadow(
 ) -> Float32[np.ndarray, "h w"]:
     """How much darker the ground under the shape is than bare ground, 0 to 1; found at half size and smoothed."""
     width, height = max(camera.width // 2, 1), max(camera.height // 2, 1)
-    rays = PinholeView(_resized(camera.camera, width, height)).rays(pixel_centres(width, height))
+    rays = PinholeView(_resize(camera.camera, width, height)).rays(pixel_centres(width, height))
     ground = -0.5 * shape.size_m[2]
     fall = np.minimum(rays[..., 5], -1e-6)
     points = rays[..., :3] + rays[..., 3:] * ((ground - rays[..., 2]) / fall)[..., None]
@@ -143,7 +143,7 @@ def _vignette(width: int, height: int) -> Float32[np.ndarray, "h w"]:
     return (np.clip(x / 0.12, 0, 1)[None, :] * np.clip(y / 0.12, 0, 1)[:, None]).astype(np.float32)
 
 
-def _resized(camera: Camera, width: int, height: int) -> Camera:
+def _resize(camera: Camera, width: int, height: int) -> Camera:
     return Camera(camera.intrinsics.scaled(width, height), camera.T_world_camera)
 
 
@@ -182,11 +182,11 @@ def contact_sheet(
         page.paste(image, (left, top), image)
         x, y, z = shape.size_m
         words = f"{shape.id}  {x:.2f} x {y:.2f} x {z:.2f}"
-        draw.text((left + 4, top + size_px + 2), _fitted(draw, words, size_px - 8), fill=INK)
+        draw.text((left + 4, top + size_px + 2), _fit(draw, words, size_px - 8), fill=INK)
     return page
 
 
-def _fitted(draw: ImageDraw.ImageDraw, words: str, width_px: int) -> str:
+def _fit(draw: ImageDraw.ImageDraw, words: str, width_px: int) -> str:
     """The words, or as many of their letters as fit."""
     while words and draw.textlength(words) > width_px:
         words = words[:-1]

@@ -64,11 +64,11 @@ class World:
         owners = [p.instance for p in placed for _ in p.surfaces]
         surfaces = [surface for p in placed for surface in p.surfaces]
         starts = np.cumsum([0, *(len(c.vertices) for c in chunks)])[:-1]
-        self.vertices = _joined([c.vertices for c in chunks], 3)
-        self._normals = _joined([c.normals for c in chunks], 3)
-        self._uv = _joined([c.uv for c in chunks], 2)
+        self.vertices = _join([c.vertices for c in chunks], 3)
+        self._normals = _join([c.normals for c in chunks], 3)
+        self._uv = _join([c.uv for c in chunks], 2)
         coloured = any(s.colours is not None for s in surfaces)
-        self._colours = _joined([c.colours for c in chunks], 3) if coloured else None
+        self._colours = _join([c.colours for c in chunks], 3) if coloured else None
         self._faces = np.concatenate(
             [np.zeros((0, 3), np.int32), *(s.faces + start for s, start in zip(surfaces, starts, strict=True))]
         ).astype(np.int32)
@@ -110,13 +110,13 @@ class World:
         w = np.concatenate([1 - hits.barycentric.sum(axis=1, keepdims=True), hits.barycentric], axis=1)
         corners = self._faces.take(triangle, axis=0)
         flat = facing(self._face_normals.take(triangle, axis=0), direction)
-        smooth = -facing(unit(_mixed(self._normals, corners, w)), flat)
+        smooth = -facing(unit(_mix(self._normals, corners, w)), flat)
         surface = self._surface_of_face.take(triangle)
-        uv = _mixed(self._uv, corners, w)
+        uv = _mix(self._uv, corners, w)
         spread = None if footprint_m is None else self._spread_uv(triangle, corners, flat, direction, footprint_m)
         albedo, alpha = self._materials.colour(surface, uv, spread)
         if self._colours is not None:
-            albedo *= _mixed(self._colours, corners, w)
+            albedo *= _mix(self._colours, corners, w)
         table = self._materials
         return Places(
             points=rays[:, :3] + direction * hits.distance[:, None],
@@ -179,10 +179,10 @@ def scene_world(
         photographed: Whether the planes' pictures hold the light of the room, as rectified photos do.
         without: Ids of objects and planes to leave out.
     """
-    return World(placed_surfaces(scene, library, textures=textures, photographed=photographed, without=without))
+    return World(place_surfaces(scene, library, textures=textures, photographed=photographed, without=without))
 
 
-def placed_surfaces(
+def place_surfaces(
     scene: Scene,
     library: ShapeLibrary,
     *,
@@ -237,11 +237,11 @@ def _chunk(surface: Surface, matrix: Float[np.ndarray, "4 4"]) -> _Chunk:
     )
 
 
-def _joined(arrays: list[np.ndarray], columns: int) -> np.ndarray:
+def _join(arrays: list[np.ndarray], columns: int) -> np.ndarray:
     return np.concatenate([np.zeros((0, columns), np.float32), *arrays])
 
 
-def _mixed(values: np.ndarray, corners: np.ndarray, weights: np.ndarray) -> np.ndarray:
+def _mix(values: np.ndarray, corners: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """Vertex values interpolated in their triangles."""
     first, second, third = (values.take(corners[:, k], axis=0) * weights[:, k, None] for k in range(3))
     return first + second + third
@@ -293,7 +293,7 @@ class _MaterialTable:
             if start < stop:
                 chosen = order[start:stop]
                 spread = None if spread_uv is None else spread_uv.take(chosen)
-                texel = _filtered(levels, uv.take(chosen, axis=0), spread, repeat=repeat)
+                texel = _filter(levels, uv.take(chosen, axis=0), spread, repeat=repeat)
                 colour[chosen] *= texel[:, :3]
                 if texel.shape[1] == 4:
                     clear = alpha[chosen] < 1
@@ -330,7 +330,7 @@ def _pyramid(picture: Float32[np.ndarray, "h w c"]) -> Pyramid:
     return tuple(levels)
 
 
-def _filtered(
+def _filter(
     levels: Pyramid, uv: Float32[np.ndarray, "n 2"], spread_uv: Float32[np.ndarray, "n"] | None, *, repeat: bool
 ) -> Float32[np.ndarray, "n c"]:
     """Texels, mixed from the two levels whose texels are nearest to so wide (trilinear)."""

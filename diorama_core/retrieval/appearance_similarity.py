@@ -29,7 +29,7 @@ from diorama_core.render.view_features import (
     colour_layout,
     layout_agreement,
     outline_and_edges,
-    painted_views,
+    paint_views,
 )
 from diorama_core.retrieval.feature_cache import cached_features, has_features
 from diorama_core.retrieval.outlines import filled, open_share
@@ -150,7 +150,7 @@ def _features_of_views(appearance: ShapeAppearance) -> Float[np.ndarray, "v widt
     templates, face_ids = templates_with_faces(
         trimesh.Trimesh(appearance.vertices, appearance.faces, process=False), _GRID
     )
-    for k, rgb in enumerate(painted_views(templates, face_ids, appearance)):
+    for k, rgb in enumerate(paint_views(templates, face_ids, appearance)):
         feature = _feature(rgb, templates.mask[k])
         if feature is not None:
             rows[k] = feature

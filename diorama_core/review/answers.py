@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.editing.placing import seated
-from diorama_core.editing.reconstructed import moved_onto
+from diorama_core.editing.placing import seat
+from diorama_core.editing.reconstructed import move_onto
 from diorama_core.editing.support_changes import without_objects
 from diorama_core.errors import EditRefused
 from diorama_core.library.record import ShapeLibrary, record_of
@@ -71,7 +71,7 @@ def _answer_kind(scene: Scene, library: ShapeLibrary, object_id: str, kind: str)
     item = scene.object(object_id)
     if record_of(library, item.shape_id).category != kind:
         scene = edits.swap(scene, object_id, candidate_of(library, item, kind), keep_pose=True)
-        scene = seated(scene, library, object_id)
+        scene = seat(scene, library, object_id)
     named = replace(scene.object(object_id), category=kind, label=kind if item.category != kind else item.label)
     scene = replace(scene, objects=tuple(named if o.id == object_id else o for o in scene.objects))
     return _believed(scene, object_id, _belief(scene, object_id).with_kind(kind))
@@ -111,8 +111,8 @@ def _answer_supporter(scene: Scene, library: ShapeLibrary, object_id: str, paren
     if edge is None or edge.parent != parent_id:
         hung = scene.has_plane(parent_id) and scene.plane(parent_id).role != "floor"
         new = Support(object_id, parent_id, "mounted on" if hung else "placed on")
-        onto = moved_onto(scene, object_id, parent_id, library) if scene.has_object(parent_id) else None
-        scene = seated(edits.attach(scene, new), library, object_id) if onto is None else onto
+        onto = move_onto(scene, object_id, parent_id, library) if scene.has_object(parent_id) else None
+        scene = seat(edits.attach(scene, new), library, object_id) if onto is None else onto
     return _believed(scene, object_id, _belief(scene, object_id).with_supporter(parent_id))
 
 

@@ -52,7 +52,7 @@ LARGEST_SIZE_M = 50.0
 
 def move(scene: Scene, object_id: str, pose: Pose) -> Scene:
     """Give an object a new pose; what it holds up follows rigidly (scale of followers is untouched)."""
-    item = _unlocked(scene, object_id)
+    item = _editable(scene, object_id)
     _check_size(item, pose)
     T_new_old = pose.T_world_object @ np.linalg.inv(item.pose.T_world_object)
     followers = set(descendants(scene, object_id))
@@ -61,7 +61,7 @@ def move(scene: Scene, object_id: str, pose: Pose) -> Scene:
         lambda o: (
             replace(o, pose=pose)
             if o.id == object_id
-            else replace(o, pose=_carried(o.pose, T_new_old))
+            else replace(o, pose=_carry(o.pose, T_new_old))
             if o.id in followers
             else o
         ),
@@ -77,7 +77,7 @@ def place(scene: Scene, poses: Mapping[str, Pose]) -> Scene:
 
 def resize(scene: Scene, object_id: str, size_m: Float[np.ndarray, "3"]) -> Scene:
     """The scene with an object of this size on the same base; what stands on it keeps standing on its new top."""
-    item = _unlocked(scene, object_id)
+    item = _editable(scene, object_id)
     rise = item.pose.R_world_object[:, 2] * (size_m[2] - item.size_m[2]) / 2
     pose = Pose(item.pose.R_world_object, item.pose.position + rise, size_m / np.asarray(item.shape_size_m))
     # What stands on it rises with the new top: a rigid move alone carries it only half of the way.
@@ -97,8 +97,8 @@ def swap(scene: Scene, object_id: str, candidate: Candidate, *, keep_pose: bool 
         candidate: the other shape, with its size and pose.
         keep_pose: whether base, heading and height stay.
     """
-    item = _unlocked(scene, object_id)
-    pose = _seated_pose(item, candidate) if keep_pose else candidate.pose
+    item = _editable(scene, object_id)
+    pose = _seat(item, candidate) if keep_pose else candidate.pose
     swapped = replace(
         item, shape_id=candidate.shape_id, shape_size_m=candidate.shape_size_m, pose=pose, colour=item.colour
     )
@@ -127,7 +127,7 @@ def remove(scene: Scene, object_ids: Iterable[str]) -> Scene:
     """Delete objects; what they held up is handed to the nearest supporter that remains, or is left loose."""
     gone = set(object_ids)
     for object_id in gone:
-        _unlocked(scene, object_id)
+        _editable(scene, object_id)
     supports: list[Support] = []
     for edge in scene.supports:
         if edge.child in gone:
@@ -190,7 +190,7 @@ def recolour(scene: Scene, object_id: str, colour: tuple[float, float, float] | 
     An object whose surfaces show the photo's materials shows the library's from then on, in that colour; pictures and
     the like, which only cover a face, stay.
     """
-    item = _unlocked(scene, object_id)
+    item = _editable(scene, object_id)
     clipped = None if colour is None else tuple(float(np.clip(c, 0.0, 1.0)) for c in colour)
     tiled = any(m.layout == "tiled" for m in item.photo_materials)
     source: MaterialSource = "library" if tiled and colour is not None else item.material_source
@@ -199,7 +199,7 @@ def recolour(scene: Scene, object_id: str, colour: tuple[float, float, float] | 
 
 def set_material_source(scene: Scene, object_id: str, source: MaterialSource) -> Scene:
     """Show the materials that the photo gave an object, or those of its shape."""
-    item = _unlocked(scene, object_id)
+    item = _editable(scene, object_id)
     if source == "photo" and not item.photo_materials:
         raise EditRefused(f"the photo shows no material of {item.label}; build it from the photo first")
     return _with(scene, object_id, material_source=source)
@@ -207,7 +207,7 @@ def set_material_source(scene: Scene, object_id: str, source: MaterialSource) ->
 
 def set_open(scene: Scene, object_id: str, open_share: float) -> Scene:
     """Open the doors, drawers and lids of an object: 0 closed to 1 as far as they go."""
-    _unlocked(scene, object_id)
+    _editable(scene, object_id)
     if not 0.0 <= open_share <= 1.0:
         raise EditRefused(f"something stands open by 0 to 100 %, not by {100 * open_share:g} %")
     return _with(scene, object_id, open_share=float(open_share))
@@ -215,7 +215,7 @@ def set_open(scene: Scene, object_id: str, open_share: float) -> Scene:
 
 def refinish(scene: Scene, object_id: str, finish: Finish | None) -> Scene:
     """Override how the main material throws light back, or give back the shape's own with None."""
-    _unlocked(scene, object_id)
+    _editable(scene, object_id)
     return _with(scene, object_id, finish=finish)
 
 
@@ -253,10 +253,10 @@ def set_room(scene: Scene, room_id: str, *, name: str | None = None, storey: int
     if text == "":
         raise EditRefused("a name cannot be empty; type at least one character")
 
-    def changed(room: HomeRoom) -> HomeRoom:
+    def change(room: HomeRoom) -> HomeRoom:
         return replace(room, name=text or room.name, storey=room.storey if storey is None else storey)
 
-    return replace(scene, rooms=tuple(changed(r) if r.id == room_id else r for r in scene.rooms))
+    return replace(scene, rooms=tuple(change(r) if r.id == room_id else r for r in scene.rooms))
 
 
 def fresh_id(scene: Scene, category: str) -> str:
@@ -272,7 +272,7 @@ def _existing(scene: Scene, object_id: str) -> SceneObject:
     return scene.object(object_id)
 
 
-def _unlocked(scene: Scene, object_id: str) -> SceneObject:
+def _editable(scene: Scene, object_id: str) -> SceneObject:
     item = _existing(scene, object_id)
     if item.locked:
         raise EditRefused(f"{item.label} is locked; unlock it first")
@@ -297,7 +297,7 @@ def _with(scene: Scene, object_id: str, **changes: Any) -> Scene:
     return _map_objects(scene, lambda o: replace(o, **changes) if o.id == object_id else o)
 
 
-def _carried(pose: Pose, T_new_old: Float[np.ndarray, "4 4"]) -> Pose:
+def _carry(pose: Pose, T_new_old: Float[np.ndarray, "4 4"]) -> Pose:
     T = T_new_old @ pose.T_world_object
     u, _, vt = np.linalg.svd(T[:3, :3])
     return Pose(u @ vt, T[:3, 3], pose.scale)
@@ -307,7 +307,7 @@ def _top(item: SceneObject) -> float:
     return float(item.corners_world[:, 2].max())
 
 
-def _seated_pose(item: SceneObject, candidate: Candidate) -> Pose:
+def _seat(item: SceneObject, candidate: Candidate) -> Pose:
     """The candidate at the item's heading and base, in the candidate's own fitted size."""
     up = item.pose.R_world_object[:, 2]
     old_half, new_half = item.size_m[2] / 2, candidate.shape_size_m[2] * candidate.pose.scale[2] / 2

@@ -105,7 +105,7 @@ Part = tuple[str, str]
 _FIELDS = ("camera", "light", "light_settings")
 
 
-def moved_last(history: History, index: int) -> History:
+def move_last(history: History, index: int) -> History:
     """The history with one change after all others up to the current state, which stays as it is.
 
     Args:
@@ -117,13 +117,13 @@ def moved_last(history: History, index: int) -> History:
     """
     before, after = history.entries[index - 1], history.entries[index]
     later = history.entries[index + 1 : history.cursor + 1]
-    without = [_replayed(entry, after, before, after.label) for entry in later]
+    without = [_replay(entry, after, before, after.label) for entry in later]
     last = replace(history.current, label=after.label, author=after.author, merge_key=None, selection=after.selection)
     entries = (*history.entries[:index], *without, last if later else after, *history.entries[history.cursor + 1 :])
     return replace(history, entries=entries)
 
 
-def moved_next(history: History, index: int) -> History:
+def move_next(history: History, index: int) -> History:
     """The history with one undone change before all others that were undone; what follows it stays as it is.
 
     Args:
@@ -135,14 +135,14 @@ def moved_next(history: History, index: int) -> History:
     """
     before, after = history.entries[index - 1], history.entries[index]
     between = history.entries[history.cursor : index]
-    done = [_replayed(entry, before, after, after.label) for entry in between]
+    done = [_replay(entry, before, after, after.label) for entry in between]
     first = replace(done[0], label=after.label, author=after.author, merge_key=None, selection=after.selection)
     rest = [replace(entry, selection=was.selection) for entry, was in zip(done[1:], between[1:], strict=True)]
     entries = (*history.entries[: history.cursor + 1], first, *rest, *history.entries[index + 1 :])
     return replace(history, entries=entries)
 
 
-def _replayed(entry: Entry, before: Entry, after: Entry, label: str) -> Entry:
+def _replay(entry: Entry, before: Entry, after: Entry, label: str) -> Entry:
     """An entry's state with the change from one state to another made in it; the label is that of the change."""
     old, new, now = _parts_of(before), _parts_of(after), _parts_of(entry)
     changed = [part for part in {**old, **new} if old.get(part) != new.get(part)]

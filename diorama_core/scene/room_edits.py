@@ -51,7 +51,7 @@ def move_plane(scene: Scene, plane_id: str, distance_m: float) -> Scene:
     planes = _with_plane_moved(scene.architecture.planes, plane, float(distance_m))
     planes = tuple(replace(p, sigma_m=0.0) if p.id == plane_id and p.sigma_m else p for p in planes)
     shift = -plane.normal * distance_m
-    return _carry(_with_planes(scene, planes), _fastened(scene, {plane_id}), shift)
+    return _carry(_with_planes(scene, planes), _followers(scene, {plane_id}), shift)
 
 
 def set_ceiling_height(scene: Scene, height_m: float) -> Scene:
@@ -72,7 +72,7 @@ def set_ceiling_height(scene: Scene, height_m: float) -> Scene:
     ceilings = scene.architecture.by_role("ceiling")
     rise = height_m - (max(float(p.polygon[:, 2].max()) for p in upper) - floor_height(scene))
 
-    def raised(plane: Plane) -> Plane:
+    def lift(plane: Plane) -> Plane:
         if plane.role == "floor":
             return plane
         polygon = plane.polygon.copy()
@@ -80,8 +80,8 @@ def set_ceiling_height(scene: Scene, height_m: float) -> Scene:
         polygon[top, 2] += rise
         return replace(plane, polygon=polygon)
 
-    planes = tuple(_sound(p, raised(p)) for p in scene.architecture.planes)
-    attached = _fastened(scene, {p.id for p in ceilings})
+    planes = tuple(_sound(p, lift(p)) for p in scene.architecture.planes)
+    attached = _followers(scene, {p.id for p in ceilings})
     return _carry(_with_planes(scene, planes), attached, np.array([0.0, 0.0, rise]))
 
 
@@ -94,18 +94,18 @@ def rescale(scene: Scene, factor: float) -> Scene:
     if not np.isfinite(factor) or not SMALLEST_FACTOR <= factor <= LARGEST_FACTOR:
         raise EditRefused(f"a scene cannot be scaled by {factor:g}; give {SMALLEST_FACTOR:g} to {LARGEST_FACTOR:g}")
 
-    def scaled_pose(pose: Pose) -> Pose:
+    def scale_pose(pose: Pose) -> Pose:
         return Pose(pose.R_world_object, pose.position * factor, pose.scale * factor)
 
-    def scaled(item: SceneObject) -> SceneObject:
-        candidates = tuple(replace(c, pose=scaled_pose(c.pose)) for c in item.candidates)
-        return replace(item, pose=scaled_pose(item.pose), candidates=candidates)
+    def scale(item: SceneObject) -> SceneObject:
+        candidates = tuple(replace(c, pose=scale_pose(c.pose)) for c in item.candidates)
+        return replace(item, pose=scale_pose(item.pose), candidates=candidates)
 
     planes = tuple(replace(p, polygon=p.polygon * factor) for p in scene.architecture.planes)
     return replace(
         _with_planes(scene, planes),
-        camera=None if scene.camera is None else _scaled_camera(scene.camera, factor),
-        objects=tuple(scaled(o) for o in scene.objects),
+        camera=None if scene.camera is None else _scale_camera(scene.camera, factor),
+        objects=tuple(scale(o) for o in scene.objects),
         metrics=(),
     )
 
@@ -164,10 +164,10 @@ def set_surface_finish(scene: Scene, plane_ids: Collection[str], finish: Surface
             f"a pattern cannot be {finish.scale:g} times as large; give {SMALLEST_PATTERN:g} to {LARGEST_PATTERN:g}"
         )
     chosen = {_plane(scene, i).id for i in plane_ids}
-    return _with_planes(scene, tuple(_finished(p, finish) if p.id in chosen else p for p in scene.architecture.planes))
+    return _with_planes(scene, tuple(_finish(p, finish) if p.id in chosen else p for p in scene.architecture.planes))
 
 
-def _finished(plane: Plane, finish: SurfaceFinish | None) -> Plane:
+def _finish(plane: Plane, finish: SurfaceFinish | None) -> Plane:
     if finish == plane.finish:
         return plane
     bare_colour = plane.colour if plane.photo_colour is None else plane.photo_colour
@@ -202,10 +202,10 @@ def _with_plane_moved(planes: tuple[Plane, ...], moved: Plane, distance_m: float
         # The least displacement that keeps the corner on every plane it belongs to.
         return corner + np.linalg.lstsq(np.array(rows), wanted, rcond=1e-6)[0]
 
-    edges = [_shared_edge(moved, p) for p in planes if _continues(moved, p)]
+    edges = [_common_edge(moved, p) for p in planes if _continues(moved, p)]
     staying = np.concatenate([np.zeros((0, 3)), *edges])
 
-    def adjusted(plane: Plane) -> Plane:
+    def adjust(plane: Plane) -> Plane:
         if plane.id == moved.id:
             return replace(plane, polygon=np.array([slide(c) for c in plane.polygon]))
         if abs(float(plane.normal @ moved.normal)) >= PARALLEL:
@@ -226,7 +226,7 @@ def _with_plane_moved(planes: tuple[Plane, ...], moved: Plane, distance_m: float
         wall_id = next(name for n in range(1, len(taken) + 2) if (name := f"{moved.role}_{n}") not in taken)
         taken.add(wall_id)
         closing.append(_closing(moved, wall_id, edge, np.array([slide(c) for c in edge]), distance_m))
-    return (*(_sound(p, adjusted(p)) for p in planes), *closing)
+    return (*(_sound(p, adjust(p)) for p in planes), *closing)
 
 
 def _continues(wall: Plane, other: Plane) -> bool:
@@ -234,10 +234,10 @@ def _continues(wall: Plane, other: Plane) -> bool:
     both = wall.role == other.role == "wall" and wall.id != other.id
     if not both or float(wall.normal @ other.normal) < PARALLEL or abs(wall.offset - other.offset) > JOINED_M:
         return False
-    return len(_shared_edge(wall, other)) == 2
+    return len(_common_edge(wall, other)) == 2
 
 
-def _shared_edge(wall: Plane, other: Plane) -> Points:
+def _common_edge(wall: Plane, other: Plane) -> Points:
     """The corners that two planes share, the lowest first."""
     near = [c for c in wall.polygon if np.linalg.norm(other.polygon - c, axis=1).min() < JOINED_M]
     return np.array(sorted(near, key=lambda c: float(c[2]))).reshape(-1, 3)
@@ -278,7 +278,7 @@ def _with_planes(scene: Scene, planes: tuple[Plane, ...]) -> Scene:
     return replace(scene, architecture=replace(scene.architecture, planes=planes))
 
 
-def _fastened(scene: Scene, plane_ids: Iterable[str]) -> frozenset[str]:
+def _followers(scene: Scene, plane_ids: Iterable[str]) -> frozenset[str]:
     """Objects that follow planes: held up by them or standing against them, with all they hold up; none locked."""
     ids = set(plane_ids)
     attached = {s.child for s in scene.supports if s.parent in ids or ids & set(s.adheres_to)}
@@ -291,7 +291,7 @@ def _carry(scene: Scene, object_ids: frozenset[str], shift_world: Float[np.ndarr
     return replace(scene, objects=tuple(moved))
 
 
-def _scaled_camera(camera: Camera, factor: float) -> Camera:
+def _scale_camera(camera: Camera, factor: float) -> Camera:
     T = camera.T_world_camera.copy()
     T[:3, 3] *= factor
     return replace(camera, T_world_camera=T)

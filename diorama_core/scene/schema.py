@@ -16,7 +16,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from diorama_core.errors import SceneError
-from diorama_core.io.bounded import parse_json, shortened
+from diorama_core.io.bounded import parse_json, shorten
 from diorama_core.scene.belief import Belief
 from diorama_core.scene.light_settings import MAX_EXPOSURE_EV, PHOTO_LIGHT, LightSettings
 from diorama_core.scene.support import check_scene
@@ -251,16 +251,16 @@ def scene_from_json(text: str | bytes, *, migrations: Mapping[int, Migration] = 
         SceneError: not JSON, not a scene file, of a newer version, or inconsistent; says where.
     """
     document = parse_json(text, "the scene file", SceneError, advice="restore a backup")
-    document = _migrated(document, migrations)
+    document = _migrate(document, migrations)
     try:
         parsed = _SceneFile.model_validate(document)
         scene = _scene_from_file(parsed)
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
-        where = shortened(".".join(str(part) for part in first["loc"]))
-        raise SceneError(f"the scene file is wrong at {where}: {shortened(first['msg'].lower())}") from error
+        where = shorten(".".join(str(part) for part in first["loc"]))
+        raise SceneError(f"the scene file is wrong at {where}: {shorten(first['msg'].lower())}") from error
     except (ValueError, TypeError, ArithmeticError) as error:
-        raise SceneError(f"the scene file is wrong: {shortened(str(error))}") from error
+        raise SceneError(f"the scene file is wrong: {shorten(str(error))}") from error
     check_scene(scene)
     return scene
 
@@ -286,15 +286,15 @@ def check_limits(scene: Scene, known: Scene | None = None) -> None:
                 json.dumps([item.id, item.label, item.category, item.shape_id], ensure_ascii=False).encode()
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
-        where = shortened(" ".join(str(part) for part in first["loc"]), 60)
-        raise SceneError(f"{where}: {shortened(first['msg'].lower())}; give a value that fits a room") from error
+        where = shorten(" ".join(str(part) for part in first["loc"]), 60)
+        raise SceneError(f"{where}: {shorten(first['msg'].lower())}; give a value that fits a room") from error
     except UnicodeEncodeError as error:
         raise SceneError("a name holds half a character; type it again") from error
     if len(scene.objects) > MAX_ITEMS:
         raise SceneError(f"a scene holds at most {MAX_ITEMS} objects")
 
 
-def _migrated(document: Any, migrations: Mapping[int, Migration]) -> dict[str, Any]:
+def _migrate(document: Any, migrations: Mapping[int, Migration]) -> dict[str, Any]:
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise SceneError(f"this is not a scene file: its 'format' is not '{FORMAT}'")
     version = document.get("version")

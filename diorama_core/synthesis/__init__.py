@@ -9,7 +9,7 @@ built = build_scene(view.inputs, library)
 """
 
 from diorama_core.synthesis.cameras import sample_cameras
-from diorama_core.synthesis.grammar import ROOM_KINDS, RoomKind, furnished_room
+from diorama_core.synthesis.grammar import ROOM_KINDS, RoomKind, furnish_room
 from diorama_core.synthesis.truth import TruthView, render_truth, to_photo_world
 
-__all__ = ["ROOM_KINDS", "RoomKind", "TruthView", "furnished_room", "render_truth", "sample_cameras", "to_photo_world"]
+__all__ = ["ROOM_KINDS", "RoomKind", "TruthView", "furnish_room", "render_truth", "sample_cameras", "to_photo_world"]

@@ -55,7 +55,7 @@ def sample_cameras(
     Views that show many objects, few of them cut off or very close, are preferred.
 
     Args:
-        scene: A room from `furnished_room`.
+        scene: A room from `furnish_room`.
         library: Where its shapes are.
         seed: Of the candidates.
         count: How many views.

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from diorama_core.appearance.patterns import COLOURS
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Architecture, Plane, Scene, SurfaceFinish, SurfacePattern
-from diorama_core.synthesis.grammar import RoomKind, furnished_room
+from diorama_core.synthesis.grammar import RoomKind, furnish_room
 
 PATTERNS: dict[str, SurfacePattern] = {
     "planks": "boards", "parquet": "parquet", "tiles": "tiles", "checker": "checker", "carpet": "carpet",
@@ -39,15 +39,15 @@ def example_room(room: ExampleRoom, library: ShapeLibrary) -> Scene:
     Raises:
         LibraryError: the library has too few shapes to furnish a room.
     """
-    scene = furnished_room(room.seed, room.kind, library, outline="box")
-    planes = tuple(_finished(plane) for plane in scene.architecture.planes)
+    scene = furnish_room(room.seed, room.kind, library, outline="box")
+    planes = tuple(_finish(plane) for plane in scene.architecture.planes)
     count = Counter(o.category for o in scene.objects)
     # "bed" where there is one, "armchair 2" where there are several.
     objects = tuple(replace(o, label=o.category) if count[o.category] == 1 else o for o in scene.objects)
     return replace(scene, architecture=Architecture(planes), objects=objects)
 
 
-def _finished(plane: Plane) -> Plane:
+def _finish(plane: Plane) -> Plane:
     """A plane with the finish that its picture's name tells (`synthesis.finishes`)."""
     if plane.texture is None:
         return plane

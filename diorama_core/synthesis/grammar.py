@@ -1,6 +1,6 @@
 """The room grammar: kinds of rooms and how each is furnished.
 
-`furnished_room` is the one way in. A room is built in the order in which people move in: doors and windows, the
+`furnish_room` is the one way in. A room is built in the order in which people move in: doors and windows, the
 main group of furniture, what stands along the walls, what hangs on them, and at last the small objects. Every step
 places only what is free of all meshes placed before, so a room is valid by construction.
 """
@@ -42,7 +42,7 @@ class Recipe:
     clutter: tuple[int, int] = (4, 20)
 
 
-def furnished_room(
+def furnish_room(
     seed: int,
     kind: RoomKind,
     library: ShapeLibrary | None = None,

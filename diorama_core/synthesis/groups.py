@@ -76,11 +76,11 @@ def pictures(f: Furnisher, count: int, *categories: str) -> None:
                 continue
             t = float(f.rng.uniform(item.size_m[1] / 2 + 0.2, wall.length_m - item.size_m[1] / 2 - 0.2))
             high = 1.9 if item.category == "clock" else EYE_M + float(f.rng.uniform(-0.05, 0.1))
-            if not _hidden(f, wall, t, item, high) and f.hang(item, wall, t, high):
+            if not _is_hidden(f, wall, t, item, high) and f.hang(item, wall, t, high):
                 break
 
 
-def _hidden(f: Furnisher, wall: WallLine, t: float, item: Item, centre_z: float) -> bool:
+def _is_hidden(f: Furnisher, wall: WallLine, t: float, item: Item, centre_z: float) -> bool:
     """Whether something tall stands before that stretch of wall."""
     for other in f.objects:
         top = float(other.pose.position[2] + other.size_m[2] / 2)

@@ -20,7 +20,7 @@ def add_door(f: Furnisher, wall: WallLine | None = None) -> str | None:
     if item is None:
         return None
     item = _sunk(item)
-    for candidate in [wall] if wall else _shuffled(f):
+    for candidate in [wall] if wall else _shuffle(f):
         if candidate.length_m < item.size_m[1] + 0.3:
             continue
         reach = candidate.length_m - item.size_m[1] / 2 - 0.12
@@ -81,5 +81,5 @@ def _sunk(item: Item) -> Item:
     return Item(item.shape, (min(1.0, STANDS_OUT_M / depth), item.scale[1], item.scale[2]))
 
 
-def _shuffled(f: Furnisher) -> list[WallLine]:
+def _shuffle(f: Furnisher) -> list[WallLine]:
     return [f.plan.walls[int(k)] for k in f.rng.permutation(len(f.plan.walls))]

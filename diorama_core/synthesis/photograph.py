@@ -42,7 +42,7 @@ class CameraResponse:
     """Brightness from which highlights are bent, 0 to 1."""
 
 
-def photographed(
+def photograph(
     radiance: Float[np.ndarray, "h w 3"],
     intrinsics: Intrinsics,
     white: Float[np.ndarray, "3"],
@@ -69,7 +69,7 @@ def photographed(
     light = radiance.astype(np.float64)
     exposed = light * (camera.mid_grey / middle_tone(light)) * falloff(intrinsics, camera.vignetting)[..., None]
     read = gaussian_filter(noisy(exposed, camera, seed), (camera.blur_px, camera.blur_px, 0))
-    return developed(read * white_gains(white, camera.balance), camera)
+    return develop(read * white_gains(white, camera.balance), camera)
 
 
 def middle_tone(light: Float[np.ndarray, "h w 3"]) -> float:
@@ -99,7 +99,7 @@ def white_gains(white: Float[np.ndarray, "3"], balance: float) -> Float[np.ndarr
     return gains / float((cast * gains) @ _LUMINANCE)
 
 
-def developed(light: Float[np.ndarray, "h w 3"], camera: CameraResponse) -> UInt8[np.ndarray, "h w 3"]:
+def develop(light: Float[np.ndarray, "h w 3"], camera: CameraResponse) -> UInt8[np.ndarray, "h w 3"]:
     """Display values of linear light: more contrast, and highlights bent towards 1, which they never reach."""
     toned = camera.mid_grey * (np.maximum(light, 0.0) / camera.mid_grey) ** camera.contrast
     rest = 1.0 - camera.shoulder

@@ -19,7 +19,7 @@ from diorama_core.geometry.openings import with_openings
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.appearance import Surface
 from diorama_core.render.raycast import PinholeView, pixel_centres
-from diorama_core.render.world import CLEAR, World, placed_surfaces
+from diorama_core.render.world import CLEAR, World, place_surfaces
 from diorama_core.scene.types import Camera, Intrinsics, Scene
 from diorama_core.synthesis.cameras import level_pose, sample_cameras
 from diorama_core.synthesis.truth import Studio
@@ -55,7 +55,7 @@ class SyntheticFrame:
     photo: UInt8[np.ndarray, "hp wp 3"] | None
 
 
-def scanned(
+def scan(
     scene: Scene, library: ShapeLibrary, seed: int, *, places: int = 4, turns: int = 10
 ) -> tuple[SyntheticFrame, ...]:
     """The frames of a scan.
@@ -108,7 +108,7 @@ def write_scan(folder: Path, frames: Sequence[SyntheticFrame]) -> Path:
 
 def _what_reflects(scene: Scene, library: ShapeLibrary) -> World:
     """Everything but clear glass, walls with their openings."""
-    placed = placed_surfaces(with_openings(scene), library)
+    placed = place_surfaces(with_openings(scene), library)
     return World([replace(p, surfaces=tuple(s for s in p.surfaces if not _is_glass(s))) for p in placed])
 
 

@@ -149,6 +149,6 @@ def _leaves_room(scene: Scene, library: ShapeLibrary, object_id: str) -> bool:
     return any(bool((points @ p.normal < p.offset - 1e-3).any()) for p in planes)
 
 
-def counted(values: Sequence[int]) -> str:
+def count(values: Sequence[int]) -> str:
     """How often each value occurs, as "1: 20, 2: 30"."""
     return ", ".join(f"{v}: {values.count(v)}" for v in sorted(set(values)))

@@ -93,7 +93,7 @@ def render_truth(
     """Photograph a room and note what is true about the picture; several views of a room share a `Studio`.
 
     Args:
-        scene: A room from `furnished_room`, in any frame with +Z up and the floor at z = 0.
+        scene: A room from `furnish_room`, in any frame with +Z up and the floor at z = 0.
         camera: Where it is photographed from (`cameras.sample_cameras`), in the same frame.
         library: Where its shapes are.
         size: Width and height of the picture.
@@ -107,7 +107,7 @@ class Studio:
     """A room made ready once, to be photographed from many places.
 
     Args:
-        scene: A room from `furnished_room`, in any frame with +Z up and the floor at z = 0.
+        scene: A room from `furnish_room`, in any frame with +Z up and the floor at z = 0.
         library: Where its shapes are.
     """
 
@@ -143,13 +143,13 @@ class Studio:
         object_ids = np.where(instance < count, instance, -1).astype(np.int32)
         amodal = _amodal_boxes(scene, placed, self._library)
         visible = _visible_fractions(scene, placed, self._library, object_ids, amodal)
-        boxes = _asked(object_ids, np.where(_shares_in_picture(scene, placed) >= MIN_INSIDE, visible, 0.0), size)
+        boxes = _boxes(object_ids, np.where(_shares_in_picture(scene, placed) >= MIN_INSIDE, visible, 0.0), size)
         objects = tuple(
             replace(o, mask_id=k + 1 if k in boxes else None, box_px=boxes.get(k)) for k, o in enumerate(scene.objects)
         )
         scene = replace(scene, objects=objects)
-        rgb = _developed(shot)
-        photo = Photo(_sensed(rgb, scene) if sensor else rgb, "rendered.png", size)
+        rgb = _develop(shot)
+        photo = Photo(_sense(rgb, scene) if sensor else rgb, "rendered.png", size)
         R_room_photo = camera.T_world_camera[:3, :3] @ placed.T_world_camera[:3, :3].T
         return TruthView(
             inputs=_inputs(photo, scene, object_ids, shot.grid.depth),
@@ -170,7 +170,7 @@ class Studio:
         """One picture, and for every pixel the index of the object it shows (-1 for the room itself)."""
         shot = self._shot(Camera(camera.intrinsics.scaled(*size), camera.T_world_camera))
         instance = shot.grid.instance
-        return _developed(shot), np.where(instance < len(self.scene.objects), instance, -1).astype(np.int32)
+        return _develop(shot), np.where(instance < len(self.scene.objects), instance, -1).astype(np.int32)
 
     def _shot(self, camera: Camera) -> Shot:
         return shoot(self._world, self._blockers, PinholeView(camera), self._light, FAST)
@@ -178,7 +178,7 @@ class Studio:
     def _empty_room(self, camera: Camera) -> UInt8[np.ndarray, "h w 3"]:
         """The picture with the room's light and without its objects: nothing stands in the way of the light."""
         nothing = self._bare.shadow_caster(without=range(len(self._shown.architecture.planes)))
-        return _developed(shoot(self._bare, nothing, PinholeView(camera), self._light, FAST))
+        return _develop(shoot(self._bare, nothing, PinholeView(camera), self._light, FAST))
 
 
 def to_photo_world(scene: Scene) -> Scene:
@@ -190,10 +190,10 @@ def to_photo_world(scene: Scene) -> Scene:
     T = np.eye(4)
     T[:3, :3] = np.rint(yaw_rotation(np.pi / 2 * (1 - quarter)))
     T[:3, 3] = -T[:3, :3] @ np.array([*scene.camera.position[:2], 0.0])
-    return moved(scene, T)
+    return transform(scene, T)
 
 
-def moved(scene: Scene, T_to_from: Float[np.ndarray, "4 4"]) -> Scene:
+def transform(scene: Scene, T_to_from: Float[np.ndarray, "4 4"]) -> Scene:
     """A scene expressed in another frame: `p_to = T_to_from @ p_from`, rigid."""
     R, t = T_to_from[:3, :3], T_to_from[:3, 3]
     planes = tuple(replace(p, polygon=p.polygon @ R.T + t) for p in scene.architecture.planes)
@@ -204,11 +204,11 @@ def moved(scene: Scene, T_to_from: Float[np.ndarray, "4 4"]) -> Scene:
     return replace(scene, camera=camera, objects=objects, architecture=replace(scene.architecture, planes=planes))
 
 
-def _developed(shot: Shot) -> UInt8[np.ndarray, "h w 3"]:
+def _develop(shot: Shot) -> UInt8[np.ndarray, "h w 3"]:
     return as_bytes(tone_mapped(shot.radiance / np.maximum(shot.coverage, 1e-3)[..., None]))
 
 
-def _sensed(rgb: UInt8[np.ndarray, "h w 3"], scene: Scene) -> UInt8[np.ndarray, "h w 3"]:
+def _sense(rgb: UInt8[np.ndarray, "h w 3"], scene: Scene) -> UInt8[np.ndarray, "h w 3"]:
     """Noise and the fall-off of a phone's lens; the same scene and camera give the same noise."""
     h, w = rgb.shape[:2]
     key = b"" if scene.camera is None else np.round(scene.camera.T_world_camera, 6).tobytes()
@@ -259,7 +259,7 @@ def _face(plane: Plane) -> trimesh.Trimesh:
     return trimesh.Trimesh(front.vertices, front.faces, process=False)
 
 
-def _asked(
+def _boxes(
     object_ids: Int32[np.ndarray, "h w"], visible: Float[np.ndarray, "n"], size: tuple[int, int]
 ) -> dict[int, Box]:
     """The objects that a person would annotate, with the boxes of their visible parts."""

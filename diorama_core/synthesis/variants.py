@@ -17,7 +17,7 @@ from diorama_core.appearance.patterns import COLOURS
 from diorama_core.appearance.surface_finish import KINDS
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.footprints import footprint_of, lie_within
-from diorama_core.editing.placing import places_of, seated
+from diorama_core.editing.placing import places_of, seat
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.editing.sunlight import first_daylight
 from diorama_core.export.gathering import ExportOptions, gather
@@ -72,7 +72,7 @@ class Variant:
 
 @dataclass(frozen=True, eq=False)
 class VariantMaker:
-    """Draws variants of one room, in which everything is at rest (`locked_where_restless`)."""
+    """Draws variants of one room, in which everything is at rest (`lock_restless`)."""
 
     room: Scene
     library: ShapeLibrary
@@ -141,7 +141,7 @@ class VariantMaker:
             scene = replace(scene, supports=loose)
             for child in children:
                 if not scene.object(child).locked:
-                    scene = seated(scene, self.library, child)
+                    scene = seat(scene, self.library, child)
         return scene
 
     def _alike(self, shape: Shape, item: SceneObject) -> bool:
@@ -164,7 +164,7 @@ class VariantMaker:
                 pose = item.pose.moved(np.array([*shift, 0.0]))
                 trial = edits.move(scene, item.id, replace(pose, R_world_object=R @ pose.R_world_object))
                 if not on_floor:
-                    trial = seated(trial, self.library, item.id)
+                    trial = seat(trial, self.library, item.id)
                 outside = on_floor and not lie_within(footprint_of(trial.object(item.id))[None], frame.outline, 0.0)[0]
                 if not outside and self.collisions.pairs(trial, moved_ids) <= before:
                     scene = trial
@@ -227,7 +227,7 @@ def stability_report(scene: Scene, library: ShapeLibrary) -> StabilityReport:
     return stability(gather(scene, library, options=ExportOptions(joints=True, lights="none", ceiling=False)))
 
 
-def locked_where_restless(scene: Scene, library: ShapeLibrary) -> tuple[Scene, tuple[str, ...]]:
+def lock_restless(scene: Scene, library: ShapeLibrary) -> tuple[Scene, tuple[str, ...]]:
     """The scene in which what gravity moves is locked, and so welded, and the ids of that."""
     locked: tuple[str, ...] = ()
     while fresh := [d.object_id for d in stability_report(scene, library).unstable]:

@@ -22,7 +22,7 @@ from diorama_core.progress import SILENT, Progress
 from diorama_core.scene import edits
 from diorama_core.scene.support import check_scene, descendants
 from diorama_core.scene.types import Pose, Scene, SceneObject
-from diorama_core.synthesis import furnished_room
+from diorama_core.synthesis import furnish_room
 from diorama_core.text.customs import DECOR
 from diorama_core.text.edit_places import lift_onto
 from diorama_core.text.placed_rows import PlacedRows, place_rows
@@ -83,7 +83,7 @@ def compose_room(
     digest = int.from_bytes(hashlib.sha256(f"{seed} {prompt}".encode()).digest()[:4], "big")
     ignored = tuple(f"the library has nothing called “{words}”, so it was left out" for words in request.ignored)
     if not request.objects:
-        scene = furnished_room(digest, request.room, library, outline="box", clutter=6)
+        scene = furnish_room(digest, request.room, library, outline="box", clutter=6)
         unwished = [o.id for o in scene.objects if {o.category, broad(o.category)} & set(request.excluded)]
         scene = edits.remove(scene, [*unwished, *(c for i in unwished for c in descendants(scene, i))])
         return Composed(scene, ignored, request)

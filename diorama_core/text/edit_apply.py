@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from diorama_core.editing.placing import seated
+from diorama_core.editing.placing import seat
 from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.relations import OF_ROOM, Relation
 from diorama_core.editing.room_frame import RoomFrame
@@ -185,5 +185,5 @@ def _remove(library: ShapeLibrary, scene: Scene, ids: Sequence[str]) -> Done:
     after = edits.remove(scene, gone)
     for rug in (i for i in ids if broad(scene.object(i).category) == "rug"):
         for child in scene.children_of(rug):
-            after = seated(after, library, child)
+            after = seat(after, library, child)
     return Done(after, (f"remove {names_of(scene, ids)}{what}",))

@@ -16,7 +16,7 @@ from pydantic import ValidationError
 from diorama_core.editing.relations import SEATS, RelationKind
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene.types import Scene
@@ -80,11 +80,11 @@ def edits_of(
         return _edits_of(clause, scene, library, last, selected)
     except ValidationError as error:  # the limits of an edit: lengths of words, numbers of copies
         first = error.errors(include_url=False, include_input=False)[0]
-        where = shortened(" ".join(str(part) for part in first["loc"]), 40)
-        quoted = shortened(clause, 60)
-        raise EditRefused(f"“{quoted}”: {where}: {shortened(first['msg'].lower())}; say it in fewer words") from error
+        where = shorten(" ".join(str(part) for part in first["loc"]), 40)
+        quoted = shorten(clause, 60)
+        raise EditRefused(f"“{quoted}”: {where}: {shorten(first['msg'].lower())}; say it in fewer words") from error
     except EditRefused as refused:  # which quotes words that may be very long
-        raise EditRefused(shortened(str(refused), MAX_LINE)) from refused
+        raise EditRefused(shorten(str(refused), MAX_LINE)) from refused
 
 
 def _edits_of(

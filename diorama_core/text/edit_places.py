@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.editing.footprints import footprint_of, lie_within
-from diorama_core.editing.placing import seated
+from diorama_core.editing.placing import seat
 from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.relations import OF_ROOM, Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
@@ -196,7 +196,7 @@ def resize(positioner: Positioner, scene: Scene, ids: Sequence[str], factor: flo
         on_it = scene.children_of(object_id)
         after = edits.move(after, object_id, pose)
         for child in on_it:
-            after = seated(after, positioner.library, child)
+            after = seat(after, positioner.library, child)
         if hung is None or hung.relation != "mounted on":
             after, note = free(positioner, after, object_id)
             notes += note

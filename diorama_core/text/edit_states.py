@@ -11,7 +11,7 @@ import numpy as np
 
 from diorama_core.editing.aligning import align, distribute, widest_axis
 from diorama_core.editing.homes import draw_room_of_home
-from diorama_core.editing.placing import against_wall, seated
+from diorama_core.editing.placing import against_wall, seat
 from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.relations import Relation
 from diorama_core.editing.sunlight import set_light, switch_lamp
@@ -95,7 +95,7 @@ def support(positioner: Positioner, scene: Scene, ids: Sequence[str], parent: st
             raise EditRefused(why_not)
         walls = (against,) if against and not hangs else ()
         edge = Support(object_id, parent, "mounted on" if hangs else "placed on", adheres_to=walls)
-        after = seated(edits.attach(after, edge), positioner.library, object_id)
+        after = seat(edits.attach(after, edge), positioner.library, object_id)
     name = scene.object(parent).label if scene.has_object(parent) else parent
     return Done(after, (f"{'hang' if hangs else 'put'} {names} on {name}",), tuple(ids))
 
@@ -147,10 +147,10 @@ def set_side(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Mea
         after = edits.resize(after, object_id, size)
         if hangs:  # it grows to all sides of where it hangs
             pose = replace(after.object(object_id).pose, position=item.pose.position)
-            after = seated(edits.move(after, object_id, pose), positioner.library, object_id)
+            after = seat(edits.move(after, object_id, pose), positioner.library, object_id)
         else:
             for child in after.children_of(object_id):
-                after = seated(after, positioner.library, child)
+                after = seat(after, positioner.library, child)
             after, note = free(positioner, after, object_id)
             notes += note
         lines.append(f"make {item.label} {target:.2f} m in {edit.side}")

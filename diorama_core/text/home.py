@@ -15,7 +15,7 @@ import numpy as np
 import shapely
 
 from diorama_core.editing.free_space import FLAT_M
-from diorama_core.editing.homes import joined
+from diorama_core.editing.homes import join
 from diorama_core.editing.opening_insertion import with_opening
 from diorama_core.editing.plan_edits import wall_feet
 from diorama_core.editing.room_frame import SWING_M
@@ -118,7 +118,7 @@ def _places(
             continue
         try:
             opened, door = with_opening(home, library, DOOR, foot.id, foot.start + share * (foot.end - foot.start))
-            made = joined(opened, room, door, own.id, names=names).scene
+            made = join(opened, room, door, own.id, names=names).scene
         except EditRefused:
             continue
         floors = [shapely.Polygon(made.plane(r.floor).polygon[:, :2]) for r in made.rooms]

@@ -19,9 +19,9 @@ from diorama_core.io.atomic import write_atomically
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
-from diorama_core.training.adapting import adapted_detector, labelled_photos
+from diorama_core.training.adapting import adapt_detector, read_photos
 from diorama_core.training.export import export_detector, export_namer, export_outliner, join_namers, score, write_card
-from diorama_core.training.facings import FacingModel, as_settings, beginning, certificate, gathered
+from diorama_core.training.facings import FacingModel, as_settings, beginning, certificate, gather
 from diorama_core.training.kind_evidence import train as train_evidence
 from diorama_core.training.picture_files import PictureFiles
 from diorama_core.training.pictures import category_names, make_pictures
@@ -132,22 +132,22 @@ def _add_photos(steps: Any) -> None:
 
 
 def _evidence(a: argparse.Namespace) -> None:
-    for way in train_evidence([(marked, folder) for marked, folder in a.photos], a.output, _told()):
+    for way in train_evidence([(marked, folder) for marked, folder in a.photos], a.output, _progress()):
         print(f"{way.way:20} first {way.first:.3f}, among five {way.among_five:.3f}, log loss {way.log_loss:.3f}")
 
 
 def _pictures(a: argparse.Namespace) -> None:
-    made = make_pictures(a.folder, built_in_library(), range(a.first, a.first + a.rooms), _told())
+    made = make_pictures(a.folder, built_in_library(), range(a.first, a.first + a.rooms), _progress())
     print(f"{made} rooms rendered, {a.rooms - made} were there: {a.folder}")
 
 
 def _windows(a: argparse.Namespace) -> None:
-    made = make_windows(a.folder, built_in_library(), range(a.first, a.first + a.rooms), _told())
+    made = make_windows(a.folder, built_in_library(), range(a.first, a.first + a.rooms), _progress())
     print(f"{made} rooms rendered, {a.rooms - made} were there: {a.folder}")
 
 
 def _shapes(a: argparse.Namespace) -> None:
-    made = make_shape_views(a.folder, built_in_library(), _told())
+    made = make_shape_views(a.folder, built_in_library(), _progress())
     print(f"{made} shapes rendered: {a.folder}")
 
 
@@ -158,7 +158,7 @@ def _train(a: argparse.Namespace) -> None:
         raise UnavailableError("--device cuda: PyTorch sees no card here; train with --device cpu")
     torch.set_num_threads(a.threads)
     trainer = _trainer(a.network, a.pictures, a.checkpoints, a.steps, a.device, a.workers)
-    trainer.run(_told())
+    trainer.run(_progress())
     print(f"{a.network}: {trainer.step} steps: {trainer.checkpoint}")
 
 
@@ -201,7 +201,7 @@ def _export_recogniser(a: argparse.Namespace) -> None:
 
 def _adapt(a: argparse.Namespace) -> None:
     kinds = category_names(built_in_library())
-    photos = {k: v for marked, folder in a.photos for k, v in labelled_photos(marked, folder, kinds).items()}
+    photos = {k: v for marked, folder in a.photos for k, v in read_photos(marked, folder, kinds).items()}
     if a.fold:
         order = np.random.default_rng(0).permutation(len(photos))
         held_out = {list(photos)[k] for k in order[a.fold[0] :: a.fold[1]]}
@@ -209,7 +209,7 @@ def _adapt(a: argparse.Namespace) -> None:
         photos = {name: photo for name, photo in photos.items() if name not in held_out}
     torch.set_num_threads(1)
     rendered = PictureFiles.of(a.pictures)
-    adapted_detector(a.detector, tuple(photos.values()), rendered, len(kinds), a.output, progress=_told())
+    adapt_detector(a.detector, tuple(photos.values()), rendered, len(kinds), a.output, progress=_progress())
     print(f"detector written: {a.output}")
 
 
@@ -226,7 +226,7 @@ def _score(a: argparse.Namespace) -> None:
 def _facings(a: argparse.Namespace) -> None:
     torch.set_num_threads(1)
     sources = [PhotoSource(*source) for source in zip(a.annotations, a.photos, strict=True)]
-    model = FacingModel(gathered(plan(sources, cache=a.stages), built_in_library(), _told()))
+    model = FacingModel(gather(plan(sources, cache=a.stages), built_in_library(), _progress()))
     given = " ".join(path.name for path in a.annotations)
     certified = certificate(model, f"python -m diorama_core.training facings {given}", a.folds)
     write_atomically(a.output, json.dumps(certified, indent=1).encode())
@@ -237,7 +237,7 @@ def _facings(a: argparse.Namespace) -> None:
     print(f"weights written: {a.output}")
 
 
-def _told() -> Progress:
+def _progress() -> Progress:
     return Progress(lambda event: print(f"{event.fraction:6.1%} {event.message}", file=sys.stderr, flush=True))
 
 

@@ -65,7 +65,7 @@ class MixedPictures:
         return self.photos[int(rng.integers(len(self.photos)))]
 
 
-def labelled_photos(annotations: Path, folder: Path, categories: Sequence[str]) -> dict[str, LabelledPicture]:
+def read_photos(annotations: Path, folder: Path, categories: Sequence[str]) -> dict[str, LabelledPicture]:
     """By id the annotated photos that a folder has; the category after the last stands for what has none."""
     index = {name: k for k, name in enumerate(categories)}
     photos = {}
@@ -84,7 +84,7 @@ def labelled_photos(annotations: Path, folder: Path, categories: Sequence[str]) 
     return photos
 
 
-def adapted_detector(
+def adapt_detector(
     graph: Path,
     photos: Sequence[LabelledPicture],
     rendered: PictureFiles,
@@ -105,7 +105,7 @@ def adapted_detector(
         progress: reports and cancellation.
     """
     how = how or Adaptation()
-    before = trained_detector(graph, kinds)
+    before = load_detector(graph, kinds)
     network, pictures = copy.deepcopy(before), MixedPictures(tuple(photos), rendered, how.of_photos)
     averaged, schedule = copy.deepcopy(network), how.schedule
     torch.manual_seed(schedule.seed)
@@ -134,7 +134,7 @@ def _approach(network: nn.Module, other: nn.Module, share: float) -> None:
         parameter.lerp_(target, share)
 
 
-def trained_detector(graph: Path, kinds: int) -> nn.Module:
+def load_detector(graph: Path, kinds: int) -> nn.Module:
     """The detector with the weights of an exported graph; its normalisations are folded into its convolutions."""
     nodes = onnx.load(str(graph)).graph
     values = {w.name: numpy_helper.to_array(w).astype(np.float32) for w in nodes.initializer}

@@ -29,12 +29,12 @@ def training_picture(
         rng: the source of chance.
     """
     if len(pictures) == 1:
-        return _relit(_cropped(pictures[0], size, rng), rng)
+        return _relit(_crop(pictures[0], size, rng), rng)
     half = (size[0] // 2, size[1] // 2)
     canvas = np.zeros((size[1], size[0], 3), np.uint8)
     boxes, categories, pixels, forms = [], [], [], []
     for k, picture in enumerate(pictures):
-        part = _relit(_cropped(picture, half, rng), rng)
+        part = _relit(_crop(picture, half, rng), rng)
         x, y = (k % 2) * half[0], (k // 2) * half[1]
         canvas[y : y + half[1], x : x + half[0]] = part.rgb
         boxes.append(part.boxes + np.array([x, y, x, y], np.float32))
@@ -45,7 +45,7 @@ def training_picture(
     return LabelledPicture(canvas, *joined)
 
 
-def _cropped(picture: LabelledPicture, size: tuple[int, int], rng: np.random.Generator) -> LabelledPicture:
+def _crop(picture: LabelledPicture, size: tuple[int, int], rng: np.random.Generator) -> LabelledPicture:
     """A random part, enlarged or reduced, with a little change of its proportions; mirrored every other time."""
     h, w = picture.rgb.shape[:2]
     fit = min(size[0] / w, size[1] / h)
@@ -72,10 +72,10 @@ def _cropped(picture: LabelledPicture, size: tuple[int, int], rng: np.random.Gen
 
 
 def _relit(picture: LabelledPicture, rng: np.random.Generator) -> LabelledPicture:
-    return replace(picture, rgb=photographed(picture.rgb, rng))
+    return replace(picture, rgb=photograph(picture.rgb, rng))
 
 
-def photographed(rgb: UInt8[np.ndarray, "h w 3"], rng: np.random.Generator) -> UInt8[np.ndarray, "h w 3"]:
+def photograph(rgb: UInt8[np.ndarray, "h w 3"], rng: np.random.Generator) -> UInt8[np.ndarray, "h w 3"]:
     """Other light, exposure, white balance, lens, sensor and compression."""
     values: Float32[np.ndarray, "h w 3"] = (rgb.astype(np.float32) / 255.0) ** np.float32(np.exp(rng.normal(0, 0.3)))
     values *= np.exp(rng.normal(0.0, [0.14, 0.05, 0.14])).astype(np.float32) * np.float32(np.exp(rng.normal(0, 0.2)))

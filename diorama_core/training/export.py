@@ -92,7 +92,7 @@ def join_namers(paths: Sequence[Path], output: Path) -> None:
     for k, graph in enumerate(graphs):
         prefixed = compose.add_prefix(graph, f"{k}_").graph
         for node in prefixed.node:
-            node.input[:] = [name.removeprefix(f"{k}_") if name in _prefixed(k) else name for name in node.input]
+            node.input[:] = [name.removeprefix(f"{k}_") if name in _names(k) else name for name in node.input]
         nodes += [*prefixed.node, *_probabilities(k, attributes[k])]
         values += [
             *prefixed.initializer,
@@ -124,7 +124,7 @@ def _attributes(graph: ModelProto, path: Path) -> tuple[str, ...]:
     return MEASURED[: ends.index(width) + 1]
 
 
-def _prefixed(k: int) -> tuple[str, ...]:
+def _names(k: int) -> tuple[str, ...]:
     return tuple(f"{k}_{name}" for name in _INPUTS)
 
 

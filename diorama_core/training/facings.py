@@ -56,7 +56,7 @@ class FacingCase:
     """By object with an annotated front the headings within the benchmark's tolerance, up to symmetry."""
 
 
-def gathered(asked: PhotoPlan, library: ShapeLibrary, progress: Progress) -> list[FacingCase]:
+def gather(asked: PhotoPlan, library: ShapeLibrary, progress: Progress) -> list[FacingCase]:
     """The photos of a plan; caches of stages are those of `bench photos`."""
     cases, wanted = [], ("inputs", "furniture_objects", "geometry", "depth", "shapes")
     for k, task in enumerate(asked.tasks):

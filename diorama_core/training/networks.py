@@ -102,7 +102,7 @@ class Detector(nn.Module):
         return torch.cat(rows, dim=1)
 
 
-def assigned(boxes: Float32[np.ndarray, "k 4"], width: int, height: int) -> Int[np.ndarray, "n"]:
+def assign(boxes: Float32[np.ndarray, "k 4"], width: int, height: int) -> Int[np.ndarray, "n"]:
     """For every place the box that it answers for (the smallest of several), or -1."""
     centres, strides = places(width, height)
     if not len(boxes):
@@ -150,7 +150,7 @@ def detector_loss(
     rows = rows.float()
     positive = target_kinds >= 0
     count = positive.sum().clamp(min=1)
-    boxes = decoded(rows[..., 1:5], centres, strides)[positive]
+    boxes = decode(rows[..., 1:5], centres, strides)[positive]
     wanted = target_boxes[positive]
     iou, generalised = _overlaps(boxes, wanted)
     quality = torch.zeros_like(rows[..., 0])
@@ -163,7 +163,7 @@ def detector_loss(
     return DetectorLoss(score, (1 - generalised).sum() / count, kind)
 
 
-def decoded(
+def decode(
     sides: Float[Tensor, "b n 4"], centres: Float[Tensor, "n 2"], strides: Float[Tensor, "n"]
 ) -> Float[Tensor, "b n 4"]:
     """Corner boxes in pixels from logarithms of the distances to the four sides, in strides."""

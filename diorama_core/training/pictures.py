@@ -23,7 +23,7 @@ from diorama_core.scene.values import ArrayValue
 from diorama_core.synthesis import sample_cameras
 from diorama_core.synthesis.cameras import CameraRanges
 from diorama_core.synthesis.truth import Studio
-from diorama_core.training.rooms import varied_room
+from diorama_core.training.rooms import random_room
 
 SIZE = (512, 384)
 """Width and height of the pictures."""
@@ -70,7 +70,7 @@ def make_pictures(folder: Path, library: ShapeLibrary, seeds: range, progress: P
     """
     names = category_names(library)
     return make_files(
-        folder, seeds, "room_{:06d}.npz".format, lambda seed: _packed(_photographed(seed, library, names)), progress
+        folder, seeds, "room_{:06d}.npz".format, lambda seed: _pack(_photograph(seed, library, names)), progress
     )
 
 
@@ -87,7 +87,7 @@ def read_picture(path: Path, k: int) -> LabelledPicture:
         unknown = np.full((len(categories), len(MEASURED)), -1, np.int8)
         forms = saved.get(f"forms_{k}", unknown)
         return LabelledPicture(
-            _decoded(saved[f"jpeg_{k}"], path), saved[f"boxes_{k}"], categories, saved[f"pixels_{k}"], forms
+            _decode(saved[f"jpeg_{k}"], path), saved[f"boxes_{k}"], categories, saved[f"pixels_{k}"], forms
         )
 
 
@@ -99,17 +99,17 @@ def read_boxes(path: Path, k: int) -> tuple[Float32[np.ndarray, "n 4"], Int[np.n
         return boxes, categories, picture.size
 
 
-def _decoded(data: UInt8[np.ndarray, "n"], path: Path) -> UInt8[np.ndarray, "h w 3"]:
+def _decode(data: UInt8[np.ndarray, "n"], path: Path) -> UInt8[np.ndarray, "h w 3"]:
     bgr = cv2.imdecode(data, cv2.IMREAD_COLOR)
     if bgr is None:
         raise InputError(f"{path}: a picture in it cannot be decoded; delete the file and render the room again")
     return np.ascontiguousarray(bgr[..., ::-1])
 
 
-def _photographed(seed: int, library: ShapeLibrary, names: tuple[str, ...]) -> tuple[LabelledPicture, ...]:
+def _photograph(seed: int, library: ShapeLibrary, names: tuple[str, ...]) -> tuple[LabelledPicture, ...]:
     """No picture where the room cannot be furnished or photographed; it is not tried again."""
     try:
-        scene = varied_room(seed, library)
+        scene = random_room(seed, library)
         cameras = sample_cameras(scene, library, seed, VIEWS, SIZE, CAMERAS)
     except (SceneError, LibraryError):
         return ()
@@ -149,7 +149,7 @@ def visible_boxes(
     return table, np.array(visible, dtype=np.int64), np.array(pixels, dtype=np.int64)
 
 
-def _packed(pictures: tuple[LabelledPicture, ...]) -> bytes:
+def _pack(pictures: tuple[LabelledPicture, ...]) -> bytes:
     arrays: dict[str, np.ndarray] = {"count": np.array(len(pictures))}
     for k, picture in enumerate(pictures):
         ok, data = cv2.imencode(".jpg", picture.rgb[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])

@@ -12,7 +12,7 @@ from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.scene.types import Scene
-from diorama_core.synthesis import ROOM_KINDS, furnished_room
+from diorama_core.synthesis import ROOM_KINDS, furnish_room
 from diorama_core.synthesis.bodies import Item
 from diorama_core.synthesis.furnisher import Furnisher
 
@@ -22,11 +22,11 @@ RECOLOURED = 0.6
 """Share of the objects that get a colour of chance: shapes and pictures must be told apart by form."""
 
 
-def varied_room(seed: int, library: ShapeLibrary) -> Scene:
+def random_room(seed: int, library: ShapeLibrary) -> Scene:
     """A furnished room with objects of any category beside those that belong there; the same seed, the same room."""
     rng = np.random.default_rng((seed, 15))
     kind = ROOM_KINDS[int(rng.integers(len(ROOM_KINDS)))]
-    scene = furnished_room(
+    scene = furnish_room(
         seed, kind, library, clutter=int(rng.integers(4, 20)), split="train", extra=lambda f: _extras(f, rng)
     )
     coloured = (replace(o, colour=any_colour(rng) if rng.random() <= RECOLOURED else None) for o in scene.objects)

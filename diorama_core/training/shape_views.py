@@ -65,7 +65,7 @@ def make_shape_views(folder: Path, library: ShapeLibrary, progress: Progress = S
         folder,
         library.shapes(),
         lambda shape: f"shape_{shape.content_hash[:16]}.npz",
-        lambda shape: _packed(_seen(shape, library, index[shape.category])),
+        lambda shape: _pack(_views(shape, library, index[shape.category])),
         progress,
     )
 
@@ -143,7 +143,7 @@ def crop_before(
         The crop, width and height of its box as shares of the longer of both, and what it shows.
     """
     views = files.draw(rng)
-    rgba = _cropped_to_solid(views.rgba[int(rng.integers(len(views.rgba)))], rng)
+    rgba = _crop_to_solid(views.rgba[int(rng.integers(len(views.rgba)))], rng)
     height, width = rgba.shape[:2]
     mirrored = rng.random() < 0.5
     rgba = rgba[:, ::-1] if mirrored else rgba
@@ -207,7 +207,7 @@ def _rare_count_more(counts: np.ndarray) -> Float32[np.ndarray, "_"]:
     return np.asarray(weights * counts.sum() / max(float(weights @ counts), 1e-9), np.float32)
 
 
-def _cropped_to_solid(rgba: UInt8[np.ndarray, "s s 4"], rng: np.random.Generator) -> UInt8[np.ndarray, "h w 4"]:
+def _crop_to_solid(rgba: UInt8[np.ndarray, "s s 4"], rng: np.random.Generator) -> UInt8[np.ndarray, "h w 4"]:
     """The rectangle around the shape itself, a little stretched; shadows beside it are left out."""
     solid = rgba[..., 3] >= SOLID
     rows, columns = np.flatnonzero(solid.any(axis=1)), np.flatnonzero(solid.any(axis=0))
@@ -246,7 +246,7 @@ def _lay(
 def _hide(canvas: UInt8[np.ndarray, "s s 3"], files: ShapeViewFiles, rng: np.random.Generator, box: np.ndarray) -> None:
     """Set another shape before a part of the box, from the left, the right or below."""
     views = files.draw(rng)
-    rgba = _cropped_to_solid(views.rgba[int(rng.integers(len(views.rgba)))], rng)
+    rgba = _crop_to_solid(views.rgba[int(rng.integers(len(views.rgba)))], rng)
     size, share, side = box[2:] - box[:2], float(rng.uniform(0.08, MAX_HIDDEN)), int(rng.integers(3))
     scale = float(rng.uniform(0.4, 1.1) * max(size) / max(rgba.shape[:2]))
     size_px = np.array([rgba.shape[1], rgba.shape[0]]) * scale
@@ -259,7 +259,7 @@ def _hide(canvas: UInt8[np.ndarray, "s s 3"], files: ShapeViewFiles, rng: np.ran
     _lay(canvas, rgba, scale, middle)
 
 
-def _seen(shape: Shape, library: ShapeLibrary, kind: int) -> ShapeViews:
+def _views(shape: Shape, library: ShapeLibrary, kind: int) -> ShapeViews:
     rng = np.random.default_rng(int(shape.content_hash[:12], 16))
     pictures = []
     for _ in range(VIEWS):
@@ -271,7 +271,7 @@ def _seen(shape: Shape, library: ShapeLibrary, kind: int) -> ShapeViews:
     return ShapeViews(np.stack(pictures), kind, value_indices(form))
 
 
-def _packed(views: ShapeViews) -> bytes:
+def _pack(views: ShapeViews) -> bytes:
     buffer = io.BytesIO()
     np.savez_compressed(buffer, rgba=views.rgba, category=np.array(views.category), form=views.form)
     return buffer.getvalue()

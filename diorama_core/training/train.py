@@ -17,12 +17,12 @@ from torch.utils.data import DataLoader, Dataset
 from diorama_core.models.images import box_crop, box_geometry
 from diorama_core.models.recogniser import places
 from diorama_core.progress import Progress
-from diorama_core.training.augment import MOSAIC_SHARE, photographed, training_picture
+from diorama_core.training.augment import MOSAIC_SHARE, photograph, training_picture
 from diorama_core.training.networks import (
     Detector,
     Namer,
     OutlineNetwork,
-    assigned,
+    assign,
     detector_loss,
     naming_loss,
     outline_loss,
@@ -213,7 +213,7 @@ def detector_batch(files: Pictures, count: int, rng: np.random.Generator) -> tup
     for _ in range(count):
         number = 4 if rng.random() < MOSAIC_SHARE else 1
         picture = training_picture([files.draw(rng) for _ in range(number)], SIZE, rng)
-        owner = assigned(picture.boxes, *SIZE)
+        owner = assign(picture.boxes, *SIZE)
         some = len(picture.boxes) > 0
         pixels.append(picture.rgb)
         boxes.append(picture.boxes[owner] if some else np.zeros((len(owner), 4), np.float32))
@@ -337,7 +337,7 @@ def _as_photographed(
         crop, where[0] = np.ascontiguousarray(crop[:, ::-1]), -where[0]
     # Photos are framed otherwise: the place in the picture and the size say a little, not all.
     where += rng.normal(0.0, [0.05, 0.05, 0.05, 0.12, 0.12, 0.03]).astype(np.float32)
-    return photographed(crop, rng), where
+    return photograph(crop, rng), where
 
 
 def _pictures_tensor(pictures: Sequence[np.ndarray]) -> Tensor:

@@ -14,14 +14,14 @@ from torch import Tensor
 
 from diorama_core.errors import InputError, LibraryError, SceneError
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.models.outliner import FILL, SIDE, resampled
+from diorama_core.models.outliner import FILL, SIDE, resample
 from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.values import ArrayValue
 from diorama_core.synthesis import sample_cameras
 from diorama_core.synthesis.truth import Studio
-from diorama_core.training.augment import photographed
+from diorama_core.training.augment import photograph
 from diorama_core.training.pictures import CAMERAS, make_files, visible_boxes
-from diorama_core.training.rooms import varied_room
+from diorama_core.training.rooms import random_room
 
 SIZE = (512, 384)
 """Width and height of the rendered pictures."""
@@ -58,7 +58,7 @@ def make_windows(folder: Path, library: ShapeLibrary, seeds: range, progress: Pr
         The number of rooms rendered now.
     """
     return make_files(
-        folder, seeds, "windows_{:06d}.npz".format, lambda seed: _packed(_room_windows(seed, library)), progress
+        folder, seeds, "windows_{:06d}.npz".format, lambda seed: _pack(_room_windows(seed, library)), progress
     )
 
 
@@ -91,7 +91,7 @@ class WindowFiles:
             rgb, share, inside = windows.rgb[k], windows.share[k], windows.inside[k]
             if rng.random() < 0.5:
                 rgb, share, inside = (np.ascontiguousarray(a[:, ::-1]) for a in (rgb, share, inside))
-            colours = np.where(inside[..., None], photographed(rgb, rng), FILL).astype(np.float32) / np.float32(255)
+            colours = np.where(inside[..., None], photograph(rgb, rng), FILL).astype(np.float32) / np.float32(255)
             inputs.append(np.concatenate([colours, inside[..., None].astype(np.float32)], axis=2).transpose(2, 0, 1))
             shares.append(share.astype(np.float32) / np.float32(255))
         return torch.from_numpy(np.stack(inputs)), torch.from_numpy(np.stack(shares))
@@ -111,7 +111,7 @@ def _room_windows(seed: int, library: ShapeLibrary) -> Windows:
     rng = np.random.default_rng(seed)
     rgb, share, inside = [], [], []
     try:
-        scene = varied_room(seed, library)
+        scene = random_room(seed, library)
         cameras = sample_cameras(scene, library, seed, VIEWS, SIZE, CAMERAS)
     except (SceneError, LibraryError):
         cameras = ()
@@ -129,9 +129,9 @@ def _room_windows(seed: int, library: ShapeLibrary) -> Windows:
             drawn = boxes[k] + rng.normal(0.0, JITTER, 4) * np.array([x2 - x1, y2 - y1, x2 - x1, y2 - y1])
             box = (float(drawn[0]), float(drawn[1]), float(drawn[2]), float(drawn[3]))
             mine = (ids == visible[k]).astype(np.float32)
-            rgb.append(resampled(picture, box))
-            share.append((resampled(mine, box) * 255).astype(np.uint8))
-            inside.append(resampled(np.ones_like(mine), box) > 0.5)
+            rgb.append(resample(picture, box))
+            share.append((resample(mine, box) * 255).astype(np.uint8))
+            inside.append(resample(np.ones_like(mine), box) > 0.5)
     blank = np.zeros((0, SIDE, SIDE))
     return Windows(
         np.array(rgb, np.uint8) if rgb else np.zeros((0, SIDE, SIDE, 3), np.uint8),
@@ -140,7 +140,7 @@ def _room_windows(seed: int, library: ShapeLibrary) -> Windows:
     )
 
 
-def _packed(windows: Windows) -> bytes:
+def _pack(windows: Windows) -> bytes:
     buffer = io.BytesIO()
     np.savez_compressed(buffer, rgb=windows.rgb, share=windows.share, inside=np.packbits(windows.inside))
     return buffer.getvalue()

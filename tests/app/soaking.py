@@ -15,7 +15,7 @@ from diorama_app.session.session import EditorSession
 from diorama_app.web.viser_adapter import create_server, last_message_arrived, stop_server
 from diorama_app.web.visitors import Visitors
 from diorama_core.editing import aligning as arranging
-from diorama_core.editing.clipboard import copied, pasted
+from diorama_core.editing.clipboard import clip_of, paste_clip
 from diorama_core.errors import DioramaError
 from diorama_core.project.storage import Project
 from diorama_core.scene.schema import scene_from_json, scene_to_json
@@ -142,7 +142,7 @@ class Soak:
 
     def _paste(self) -> None:
         if len(self.session.scene.objects) < MAX_OBJECTS:
-            scene, heads = pasted(self.session.scene, copied(self.session.scene, self.client.selection))
+            scene, heads = paste_clip(self.session.scene, clip_of(self.session.scene, self.client.selection))
             self.session.commit("paste", scene, by=self.client, selection=heads)
 
     def _attach(self) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from diorama_app.session.jobs import JobStatus
 from diorama_app.workspace import Workspace
-from diorama_core.editing.clipboard import copied
+from diorama_core.editing.clipboard import clip_of
 from diorama_core.errors import DioramaError
 from tests.app.people import LocalClient, join
 from tests.app.small_room import PlainLibrary, make_project
@@ -50,7 +50,7 @@ def test_a_name_of_no_project_is_told_on_the_first_page(workspace: Workspace, na
 def test_a_copy_made_in_one_project_is_pasted_in_another(workspace: Workspace) -> None:
     workspace.server("second")
     first, second = (e.session for e in workspace.editors)
-    first.shared.clip = copied(first.scene, ["chair_1"])
+    first.shared.clip = clip_of(first.scene, ["chair_1"])
     assert second.shared.clip is first.shared.clip
 
 

@@ -16,10 +16,10 @@ DOUBT = Belief(kinds=(("chair", 0.6), ("stool", 0.4)))
 @pytest.fixture
 def room(tmp_path: Path) -> Path:
     from diorama_core.library.catalogue import built_in_library
-    from diorama_core.synthesis.grammar import furnished_room
+    from diorama_core.synthesis.grammar import furnish_room
 
     project = Project.create(tmp_path / "room")
-    scene = furnished_room(2, "dining", built_in_library(), outline="box", clutter=4)
+    scene = furnish_room(2, "dining", built_in_library(), outline="box", clutter=4)
     chair = next(o for o in scene.objects if o.category == "chair")
     project.save_scene(believed(scene, {chair.id: DOUBT}))
     return project.folder

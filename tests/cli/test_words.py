@@ -8,7 +8,7 @@ import pytest
 from diorama_app.cli import main, words
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.project.storage import Project
-from diorama_core.synthesis.grammar import furnished_room
+from diorama_core.synthesis.grammar import furnish_room
 from tests.perception.language.stub_lmm import StubLmm, answering
 
 
@@ -20,7 +20,7 @@ def _no_model(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def room(tmp_path: Path) -> Path:
     project = Project.create(tmp_path / "room")
-    project.save_scene(furnished_room(2, "dining", built_in_library(), outline="box", clutter=4))
+    project.save_scene(furnish_room(2, "dining", built_in_library(), outline="box", clutter=4))
     return project.folder
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from diorama_core.editing.homes import joined
+from diorama_core.editing.homes import join
 from diorama_core.geometry.rooms import doorways, rooms_of_objects
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
@@ -31,7 +31,7 @@ def room(door: str, wall: str) -> Scene:
 @pytest.fixture
 def flat(editor: EditorPage) -> Iterator[EditorPage]:
     """Two rooms with a door between them."""
-    made = joined(room("door_1", "wall_3"), room("door_1", "wall_1"), "door_1", "door_1", names=("hall", "study"))
+    made = join(room("door_1", "wall_3"), room("door_1", "wall_1"), "door_1", "door_1", names=("hall", "study"))
     editor.session.ui_thread.post(lambda: editor.session.edit("make a home", lambda s: made.scene, by=editor.client))
     editor.until(lambda: len(editor.session.scene.rooms) == 2, "a home")
     editor.settle()

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 from diorama_core.artefacts import LabelledBox
-from diorama_core.editing.box_checks import merged_boxes, too_tall
+from diorama_core.editing.box_checks import merge_boxes, too_tall
 
 
 def _box(kind: str, x: float, y: float, width: float, height: float) -> LabelledBox:
@@ -11,14 +11,14 @@ def _box(kind: str, x: float, y: float, width: float, height: float) -> Labelled
 def test_proposals_of_one_object_are_one() -> None:
     shelf, piece = _box("bookshelf", 100, 50, 200, 400), _box("shelves", 100, 60, 195, 180)
     again = _box("wardrobe", 104, 48, 204, 398)
-    assert merged_boxes([shelf, piece, again]) == (shelf,)
+    assert merge_boxes([shelf, piece, again]) == (shelf,)
 
 
 def test_what_stands_before_another_thing_is_kept() -> None:
     sofa, pillow = _box("sofa", 100, 200, 400, 150), _box("pillow", 150, 210, 60, 50)
     near, far = _box("chair", 50, 200, 150, 250), _box("chair", 90, 210, 60, 90)
-    assert merged_boxes([sofa, pillow]) == (sofa, pillow)
-    assert merged_boxes([near, far]) == (near, far)
+    assert merge_boxes([sofa, pillow]) == (sofa, pillow)
+    assert merge_boxes([near, far]) == (near, far)
 
 
 def test_a_chair_taller_than_a_door_that_stands_nearer_is_told() -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.editing.clearances import clearances, moved_to_clearance, room_before
+from diorama_core.editing.clearances import clearances, room_before, set_clearance
 from diorama_core.editing.plan_edits import empty_room
 from diorama_core.errors import EditRefused
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
@@ -64,7 +64,7 @@ def test_a_typed_distance_is_kept_with_everything_on_it() -> None:
     load = box("load", 0.0, 0.0, (0.2, 0.2, 0.2), base=0.8)
     scene = scene_of(box("a", 0.0, 0.0, yaw=np.pi / 2))
     scene = replace(scene, objects=(*scene.objects, load), supports=(*scene.supports, Support("load", "a")))
-    moved = moved_to_clearance(scene, "a", "front", 0.25)
+    moved = set_clearance(scene, "a", "front", 0.25)
     assert by_side(moved, "a")["front"] == (0.25, "wall_1")
     np.testing.assert_allclose(
         moved.object("load").pose.position - load.pose.position,
@@ -72,10 +72,10 @@ def test_a_typed_distance_is_kept_with_everything_on_it() -> None:
         atol=1e-9,
     )
     with pytest.raises(EditRefused, match="cannot be set"):
-        moved_to_clearance(scene, "a", "front", -1.0)
+        set_clearance(scene, "a", "front", -1.0)
     alone = replace(scene, architecture=Scene().architecture, supports=())
     with pytest.raises(EditRefused, match="nothing to the left"):
-        moved_to_clearance(alone, "a", "left", 1.0)
+        set_clearance(alone, "a", "left", 1.0)
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.4, 1.2, -2.0])

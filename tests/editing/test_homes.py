@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.editing.homes import as_one_door, draw_room_of_home, joined
+from diorama_core.editing.homes import as_one_door, draw_room_of_home, join
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rooms import doorways, rooms_of_objects, rooms_of_planes
 from diorama_core.multiview.one_scene import moved_to_room
@@ -51,7 +51,7 @@ def turned() -> Scene:
 
 
 def test_the_two_sides_of_the_door_are_one(home: Scene, turned: Scene) -> None:
-    made = joined(home, turned, "door", "way-in", names=("hall", "study"), wall_m=0.2).scene
+    made = join(home, turned, "door", "way-in", names=("hall", "study"), wall_m=0.2).scene
     check_scene(made)
     assert scene_from_json(scene_to_json(made)) == made
     assert [(r.name, r.storey) for r in made.rooms] == [("hall", 0), ("study", 0)]
@@ -103,7 +103,7 @@ def test_a_door_that_one_photo_cuts_off_is_as_the_other_shows_it(home: Scene, as
 
 
 def test_names_are_apart_and_everything_keeps_its_room(home: Scene, turned: Scene) -> None:
-    made = joined(home, turned, "door", "way-in").scene
+    made = join(home, turned, "door", "way-in").scene
     assert [r.name for r in made.rooms] == ["room", "room 2"]
     ids = [v.id for v in (*made.objects, *made.architecture.planes, *made.rooms)]
     assert len(ids) == len(set(ids))
@@ -115,8 +115,8 @@ def test_names_are_apart_and_everything_keeps_its_room(home: Scene, turned: Scen
 
 
 def test_a_third_room_joins_at_another_door(home: Scene, turned: Scene) -> None:
-    two = joined(with_door(home, "second", "wall_1", 0.0), turned, "door", "way-in").scene
-    three = joined(two, turned, "second", "way-in", names=("x", "bath")).scene
+    two = join(with_door(home, "second", "wall_1", 0.0), turned, "door", "way-in").scene
+    three = join(two, turned, "second", "way-in", names=("x", "bath")).scene
     assert [r.name for r in three.rooms] == ["room", "room 2", "bath"]
     assert len(doorways(three)) == 2
 
@@ -126,23 +126,23 @@ def test_pictures_of_both_stay(home: Scene, turned: Scene) -> None:
         planes = (replace(p, texture=p.role) if p.role == "floor" else p for p in scene.architecture.planes)
         return edits.set_planes(scene, planes)
 
-    made = joined(papered(home), papered(turned), "door", "way-in")
+    made = join(papered(home), papered(turned), "door", "way-in")
     assert made.textures == {"floor": "floor-2"}
     assert [p.texture for p in made.scene.architecture.by_role("floor")] == ["floor", "floor-2"]
 
 
 def test_what_cannot_be_joined_says_why(home: Scene, turned: Scene) -> None:
     with pytest.raises(EditRefused, match="choose one of: way-in"):
-        joined(home, turned, "door", "door")
+        join(home, turned, "door", "door")
     with pytest.raises(EditRefused, match="no door 'table'"):
-        joined(home, turned, "table", "way-in")
+        join(home, turned, "table", "way-in")
     with pytest.raises(EditRefused, match="without a floor"):
-        joined(home, Scene(), "door", "way-in")
+        join(home, Scene(), "door", "way-in")
     with pytest.raises(EditRefused, match="2 m thick"):
-        joined(home, turned, "door", "way-in", wall_m=2.0)
+        join(home, turned, "door", "way-in", wall_m=2.0)
     free = edits.detach(edits.move(home, "door", Pose.upright((0.0, 0.0, 1.0))), "door")
     with pytest.raises(EditRefused, match="in no wall"):
-        joined(free, turned, "door", "way-in")
+        join(free, turned, "door", "way-in")
 
 
 def square(x: float, y: float, side: float = 3.0) -> np.ndarray:

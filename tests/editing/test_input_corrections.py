@@ -14,8 +14,8 @@ from diorama_app.reconstruction.camera_correction import camera_height_m
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.editing.input_corrections import (
     boxes_json,
-    given_outline,
-    labelled_box,
+    find_outline,
+    label_box,
     same_object,
     with_box_at,
     with_boxes_added,
@@ -55,7 +55,7 @@ def test_another_word_keeps_box_and_outline(inputs: Inputs) -> None:
     ui_thread = replace(TABLE, category="desk", label="desk")
     renamed = with_correction(outlined, TABLE.box, ui_thread)
     assert renamed.boxes == (ui_thread, CHAIR)
-    mask = given_outline(renamed, ui_thread.box)
+    mask = find_outline(renamed, ui_thread.box)
     assert mask is not None
     np.testing.assert_array_equal(mask, ROUND)
 
@@ -72,7 +72,7 @@ def test_a_box_drawn_anew_takes_the_place_of_the_old_one_and_drops_its_outline(i
 def test_a_later_outline_lies_in_front_and_leaves_the_others(inputs: Inputs) -> None:
     both = with_correction(with_correction(inputs, TABLE.box, TABLE, ROUND), CHAIR.box, CHAIR, disc(250, 310, 40))
     assert both.boxes == (TABLE, CHAIR)
-    table, chair = given_outline(both, TABLE.box), given_outline(both, CHAIR.box)
+    table, chair = find_outline(both, TABLE.box), find_outline(both, CHAIR.box)
     assert table is not None
     assert chair is not None
     np.testing.assert_array_equal(chair, disc(250, 310, 40))
@@ -97,12 +97,12 @@ def test_the_next_build_takes_the_outline_as_it_was_drawn(inputs: Inputs) -> Non
 
 def test_boxes_are_drawn_named_moved_and_deleted(inputs: Inputs) -> None:
     outlined = with_correction(inputs, TABLE.box, TABLE, ROUND)
-    couch = labelled_box((10.0, 20.0, 110.0, 220.0), "couch")
+    couch = label_box((10.0, 20.0, 110.0, 220.0), "couch")
     assert couch.category == "sofa"
     marked = replace(outlined, boxes=(*outlined.boxes, couch))
-    desk = with_box_at(marked, 0, labelled_box(TABLE.box, "desk"))
+    desk = with_box_at(marked, 0, label_box(TABLE.box, "desk"))
     assert [b.label for b in desk.boxes] == ["desk", "chair", "couch"]
-    assert given_outline(desk, TABLE.box) is not None, "another name keeps the outline"
+    assert find_outline(desk, TABLE.box) is not None, "another name keeps the outline"
     moved = with_box_at(desk, 0, replace(desk.boxes[0], box=(250.0, 200.0, 440.0, 420.0)))
     assert moved.instance_boxes == (), "another box drops it"
     assert [b.label for b in without_box(moved, 1).boxes] == ["desk", "couch"]
@@ -117,7 +117,7 @@ def test_detected_boxes_join_those_that_are_there(inputs: Inputs) -> None:
 
 def test_drawn_boxes_go_back_to_the_files_pixels() -> None:
     photo = plain_photo()
-    boxes = [labelled_box((10.0, 20.0, 110.0, 220.0), "couch"), labelled_box((5.0, 5.0, 50.0, 60.0), "chair")]
+    boxes = [label_box((10.0, 20.0, 110.0, 220.0), "couch"), label_box((5.0, 5.0, 50.0, 60.0), "chair")]
     buffer = io.BytesIO()
     Image.fromarray(photo.rgb).save(buffer, "PNG")
     again = read_inputs(buffer.getvalue(), name="p.png", boxes=boxes_json(boxes, photo))

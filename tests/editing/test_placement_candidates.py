@@ -11,10 +11,10 @@ from diorama_core.editing.relations import Relation
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import SceneObject
-from diorama_core.synthesis.grammar import furnished_room
+from diorama_core.synthesis.grammar import furnish_room
 from tests.editing.objects import item
 
-SCENE = furnished_room(3, "living", built_in_library(), outline="box", clutter=4)
+SCENE = furnish_room(3, "living", built_in_library(), outline="box", clutter=4)
 FRAME = RoomFrame.of(SCENE)
 
 

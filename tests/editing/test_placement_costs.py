@@ -13,10 +13,10 @@ from diorama_core.editing.relations import Relation, Stances
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Architecture, Scene, SceneObject
-from diorama_core.synthesis.grammar import furnished_room
+from diorama_core.synthesis.grammar import furnish_room
 from tests.editing.objects import SOFA, item
 
-ROOM = furnished_room(3, "living", built_in_library(), outline="box", clutter=0).architecture
+ROOM = furnish_room(3, "living", built_in_library(), outline="box", clutter=0).architecture
 FRAME = RoomFrame.of(Scene(architecture=ROOM))
 
 

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from diorama_app.interaction.gestures import objects_in
 from diorama_app.session.problem_checker import problems
 from diorama_core.editing import aligning as arranging
-from diorama_core.editing.clipboard import copied, pasted
+from diorama_core.editing.clipboard import clip_of, paste_clip
 from diorama_core.editing.collisions import Collisions
-from diorama_core.editing.dragging import GRID_M, Slide, snapped_pose
-from diorama_core.editing.placing import against_wall, hits_along, insertion, places_of, seated, spot_in_view
+from diorama_core.editing.dragging import GRID_M, Slide, snap_pose
+from diorama_core.editing.placing import against_wall, hits_along, insertion, places_of, seat, spot_in_view
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import with_openings
 from diorama_core.library.catalogue import built_in_library
@@ -94,7 +94,7 @@ def test_sliding_stops_at_the_table_and_snapping_keeps_to_the_grid() -> None:
     snapped = under_hand(scene, "chair_2", chair.pose.position, np.array([1.013, 0.484, 0.4]), snap=True)
     x, y = snapped.object("chair_2").pose.position[:2] / GRID_M
     assert (x - round(x), y - round(y)) == pytest.approx((0.0, 0.0), abs=1e-6)
-    turned = snapped_pose(chair.pose, Pose.upright(chair.pose.position, chair.pose.yaw_rad + 0.4))
+    turned = snap_pose(chair.pose, Pose.upright(chair.pose.position, chair.pose.yaw_rad + 0.4))
     assert (np.degrees(turned.yaw_rad) / 15.0) == pytest.approx(round(np.degrees(turned.yaw_rad) / 15.0))
 
 
@@ -146,21 +146,21 @@ def test_mirrored_desks_have_their_drawers_at_the_other_side() -> None:
 
 def test_copies_keep_standing_on_copies_and_paste_into_another_room() -> None:
     scene = furnished_scene()
-    clip = copied(scene, ["table_1"])
+    clip = clip_of(scene, ["table_1"])
     assert [o.id for o in clip.objects] == ["table_1", "lamp_1"]
-    again, heads = pasted(scene, clip)
+    again, heads = paste_clip(scene, clip)
     check_scene(again)
     assert len(heads) == 1
     lamp = next(o for o in again.objects if o.category == "lamp" and o.id != "lamp_1")
     assert again.support_of(lamp.id).parent == heads[0]
-    elsewhere, _ = pasted(Scene(architecture=scene.architecture), copied(scene, ["lamp_1"]))
+    elsewhere, _ = paste_clip(Scene(architecture=scene.architecture), clip_of(scene, ["lamp_1"]))
     check_scene(elsewhere)
     assert elsewhere.support_of("lamp_1").parent == "floor"
 
 
 def test_a_new_supporter_and_a_wall_are_followed_at_once() -> None:
     scene = furnished_scene()
-    on_table = seated(edits.attach(scene, Support("chair_1", "table_1")), LIBRARY, "chair_1")
+    on_table = seat(edits.attach(scene, Support("chair_1", "table_1")), LIBRARY, "chair_1")
     assert on_table.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.74)
     wall = scene.plane("wall_2")
     backed = against_wall(scene, "chair_2", wall).object("chair_2")

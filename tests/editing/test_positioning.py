@@ -9,12 +9,12 @@ from diorama_core.editing.relations import Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Pose, SceneObject
-from diorama_core.synthesis.grammar import furnished_room
+from diorama_core.synthesis.grammar import furnish_room
 
 
 def test_the_best_place_is_free_and_repeatable() -> None:
     library = built_in_library()
-    scene = furnished_room(3, "living", library, outline="box", clutter=4)
+    scene = furnish_room(3, "living", library, outline="box", clutter=4)
     shape = library.in_category("armchair")[0]
     item = SceneObject("new", "armchair", shape.category, shape.id, shape.size_m, Pose.upright(np.zeros(3)))
     wish = Relation("facing", ("sofa_1",))

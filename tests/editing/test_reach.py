@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.editing.homes import joined
+from diorama_core.editing.homes import join
 from diorama_core.editing.reach import uses_of
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
@@ -52,7 +52,7 @@ def test_furniture_narrows_ways_and_takes_the_turning_circle() -> None:
 
 
 def test_rooms_of_a_home_are_told_apart() -> None:
-    home = joined(bare(("door", "wall_3")), bare(("way", "wall_1")), "door", "way", names=("hall", "study")).scene
+    home = join(bare(("door", "wall_3")), bare(("way", "wall_1")), "door", "way", names=("hall", "study")).scene
     home = with_door(home, "out", "wall_1", 0.0)
     hall, study = uses_of(home)
     assert (hall.room.name, study.room.name) == ("hall", "study")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.editing.collisions import Collisions
-from diorama_core.editing.reconstructed import inserted
+from diorama_core.editing.reconstructed import insert
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
 from tests.app.small_room import PlainLibrary, furnished_scene
 
@@ -44,7 +44,7 @@ def test_what_would_go_through_a_table_stands_on_it_as_the_photo_shows_it() -> N
     assert camera is not None
     foot = camera.project(np.array([[0.1, 2.2, 0.74]]))[0]  # the photo shows it on the table
     lamp = replace(_lamp(0.1, 2.55, 1.6), box_px=(foot[0] - 20.0, foot[1] - 90.0, foot[0] + 20.0, foot[1]))
-    after = inserted(scene, Posed(lamp, Support("new", "floor")), PlainLibrary())
+    after = insert(scene, Posed(lamp, Support("new", "floor")), PlainLibrary())
     new = after.objects[-1]
     assert after.support_of(new.id).parent == "table_1"
     assert not Collisions(PlainLibrary()).pairs(after, [new.id])
@@ -57,7 +57,7 @@ def test_what_would_go_through_a_table_stands_on_it_as_the_photo_shows_it() -> N
 @pytest.mark.unchecked
 def test_what_cannot_stand_on_it_stands_beside_it() -> None:
     scene = _room()
-    after = inserted(scene, Posed(_lamp(-0.9, 1.5, 0.5), Support("new", "floor")), PlainLibrary())
+    after = insert(scene, Posed(_lamp(-0.9, 1.5, 0.5), Support("new", "floor")), PlainLibrary())
     new = after.objects[-1]
     assert after.support_of(new.id).parent == "floor"
     assert not Collisions(PlainLibrary()).pairs(after, [new.id])
@@ -66,7 +66,7 @@ def test_what_cannot_stand_on_it_stands_beside_it() -> None:
 @pytest.mark.unchecked
 def test_what_meets_nothing_stays() -> None:
     lamp = _lamp(-1.6, 2.8, 0.5)
-    after = inserted(_room(), Posed(lamp, Support("new", "floor")), PlainLibrary())
+    after = insert(_room(), Posed(lamp, Support("new", "floor")), PlainLibrary())
     np.testing.assert_allclose(after.objects[-1].pose.position, lamp.pose.position, atol=1e-6)
 
 
@@ -78,7 +78,7 @@ def test_what_was_found_out_of_the_room_stands_on_what_the_photo_shows_it_on() -
     foot = camera.project(np.array([[0.1, 2.2, 0.74]]))[0]
     lamp = replace(_lamp(-0.7, 7.3, 1.1), box_px=(foot[0] - 20.0, foot[1] - 70.0, foot[0] + 20.0, foot[1]))
     below = replace(lamp, pose=lamp.pose.moved((0.0, 0.0, -0.9)))
-    after = inserted(scene, Posed(below, Support("new", "wall_4", "mounted on")), PlainLibrary())
+    after = insert(scene, Posed(below, Support("new", "wall_4", "mounted on")), PlainLibrary())
     new = after.objects[-1]
     edge = after.support_of(new.id)
     assert edge is not None

@@ -11,10 +11,10 @@ from diorama_core.editing.relations import MET, Relation, RelationKind, Stances,
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Pose
-from diorama_core.synthesis.grammar import furnished_room
+from diorama_core.synthesis.grammar import furnish_room
 from tests.editing.objects import SOFA, item
 
-FRAME = RoomFrame.of(furnished_room(3, "living", built_in_library(), outline="box", clutter=0))
+FRAME = RoomFrame.of(furnish_room(3, "living", built_in_library(), outline="box", clutter=0))
 CASES: list[tuple[RelationKind, tuple[float, float, float], bool]] = [
     ("beside", (0.0, 1.3, 0.0), True),
     ("beside", (1.2, 0.0, 0.0), False),

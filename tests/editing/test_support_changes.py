@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.editing.support_changes import held_again, why_not_on
+from diorama_core.editing.support_changes import reattach, why_not_on
 from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
 from tests.app.small_room import furnished_scene
@@ -22,11 +22,11 @@ def test_what_fell_off_is_held_by_the_floor() -> None:
     beside = room.object(table.parent).corners_world[:, :2].max(axis=0) + 0.3
     to_floor = float(ball.size_m[2]) / 2 - float(ball.pose.position[2])
     low = ball.pose.moved((*(beside - ball.pose.position[:2]), to_floor))
-    after = held_again(room, edits.place(room, {ball.id: low}))
+    after = reattach(room, edits.place(room, {ball.id: low}))
     edge = after.support_of(ball.id)
     assert edge is not None
     assert edge.parent == "floor"
-    assert held_again(room, room) == room
+    assert reattach(room, room) == room
 
 
 SIZES = {

@@ -47,7 +47,7 @@ from diorama_core.progress import Progress
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Scene, yaw_rotation
 from diorama_core.synthesis.layout_rooms import box_library, generate_room, room_box
-from diorama_core.synthesis.truth import TruthView, moved, to_photo_world
+from diorama_core.synthesis.truth import TruthView, to_photo_world, transform
 from tests.evaluation.truth import without_unasked
 
 SIZE = (80, 60)
@@ -95,7 +95,7 @@ def test_the_truth_scores_full_marks(view, library):
 def test_another_frame_changes_nothing(view, library):
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = yaw_rotation(0.7), [1, 2, 0]
-    scores = scene_scores(view, moved(without_unasked(view), T), library)
+    scores = scene_scores(view, transform(without_unasked(view), T), library)
     assert scores.own.acc == 1
     assert scores.out_of_bounds == 0
 
@@ -195,7 +195,7 @@ def test_an_empty_scene_is_a_failure_not_a_crash(view, library):
 def test_the_photo_world_is_below_the_camera(view):
     turned = np.eye(4)
     turned[:3, :3], turned[:3, 3] = yaw_rotation(np.pi), [3, 1, 0]
-    scene = to_photo_world(moved(view.scene, turned))
+    scene = to_photo_world(transform(view.scene, turned))
     assert np.allclose(scene.camera.position[:2], 0)
     assert np.allclose(scene.camera.T_world_camera[:3, 2], [0, 1, 0], atol=1e-9)
 

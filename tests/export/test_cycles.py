@@ -14,13 +14,13 @@ from diorama_core.export.blender import PYTHON_VARIABLE
 from diorama_core.export.cycles import LightPortal, Outdoors, cycles_picture, cycles_radiance
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Scene
-from diorama_core.synthesis import furnished_room, sample_cameras, to_photo_world
+from diorama_core.synthesis import furnish_room, sample_cameras, to_photo_world
 
 
 @pytest.fixture(scope="module")
 def scene():
     library = built_in_library()
-    room = furnished_room(1, "corridor", library, clutter=0)
+    room = furnish_room(1, "corridor", library, clutter=0)
     return to_photo_world(replace(room, camera=sample_cameras(room, library, 1, 1, (48, 36))[0]))
 
 

@@ -19,7 +19,7 @@ from diorama_core.importing.point_files import read_points
 from diorama_core.library.ingest.finding import members_of
 from diorama_core.library.ingest.limits import Limits
 from diorama_core.library.ingest.models import read_model
-from diorama_core.library.ingest.repair import repaired
+from diorama_core.library.ingest.repair import repair
 from diorama_core.progress import Progress
 from tests.importing.scans import room_points
 
@@ -135,7 +135,7 @@ def _model(data: bytes, suffix: str) -> object:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"model{suffix}"
         path.write_bytes(data)
-        return len(repaired(read_model(path, Path(folder), Limits()).scene, Limits()).meshes)
+        return len(repair(read_model(path, Path(folder), Limits()).scene, Limits()).meshes)
 
 
 def _glb(data: bytes) -> object:
@@ -169,7 +169,7 @@ def read_archive(data: bytes) -> object:
         path.write_bytes(data)
         members = members_of(path)
         for member in members:
-            repaired(read_model(path, Path(name), Limits(), member).scene, Limits())
+            repair(read_model(path, Path(name), Limits(), member).scene, Limits())
         if not members:
             with open_form(path) as (form, place):
                 form.read(place, Progress())

@@ -189,13 +189,13 @@ def _used_scene(data: bytes) -> object:
 def _model(suffix: str) -> Callable[[bytes], object]:
     def read(data: bytes) -> object:
         from diorama_core.library.ingest.models import read_model
-        from diorama_core.library.ingest.repair import repaired
+        from diorama_core.library.ingest.repair import repair
 
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"model{suffix}"
             path.write_bytes(data)
             (Path(folder) / "model.mtl").write_bytes(_MTL)
-            return repaired(read_model(path, Path(folder), Limits()).scene, Limits())
+            return repair(read_model(path, Path(folder), Limits()).scene, Limits())
 
     return read
 
@@ -225,13 +225,13 @@ def _mesh(kind: str) -> bytes:
 
 def _mtl(data: bytes) -> object:
     from diorama_core.library.ingest.models import read_model
-    from diorama_core.library.ingest.repair import repaired
+    from diorama_core.library.ingest.repair import repair
 
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "model.obj").write_bytes(_OBJ)
         (Path(folder) / "model.mtl").write_bytes(data)
         (Path(folder) / "wood.png").write_bytes(_picture("PNG"))
-        return repaired(read_model(Path(folder) / "model.obj", Path(folder), Limits()).scene, Limits())
+        return repair(read_model(Path(folder) / "model.obj", Path(folder), Limits()).scene, Limits())
 
 
 def _language(data: bytes) -> object:

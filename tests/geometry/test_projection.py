@@ -12,8 +12,8 @@ from diorama_core.geometry.projection import (
     box_iou,
     cuboid_corners,
     plane_edges,
-    seen_segments,
     visible_bounds,
+    visible_segments,
 )
 from diorama_core.scene.types import Camera, Intrinsics, Plane, box_corners, yaw_rotation
 
@@ -105,7 +105,7 @@ def test_a_box_has_twelve_edges_each_along_one_axis() -> None:
 
 def test_a_square_before_the_camera_lands_where_it_is_projected() -> None:
     square = Plane("wall_1", "wall", np.array([[2.0, 1, 0], [2.0, -1, 0], [2.0, -1, 1], [2.0, 1, 1]]))
-    seen = seen_segments(_camera(), [plane_edges(square)])
+    seen = visible_segments(_camera(), [plane_edges(square)])
     assert seen.shape == (4, 2, 2)
     assert np.allclose(seen[0], [[50.0, 50.0], [150.0, 50.0]])
 
@@ -113,7 +113,7 @@ def test_a_square_before_the_camera_lands_where_it_is_projected() -> None:
 def test_lines_are_cut_near_the_camera_and_left_out_behind_it() -> None:
     through = np.array([[[-3.0, 1.0, 0.0], [3.0, 1.0, 0.0]]])
     behind = np.array([[[-3.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]])
-    seen = seen_segments(_camera(), [through, behind])
+    seen = visible_segments(_camera(), [through, behind])
     assert seen.shape == (1, 2, 2)
     far = seen[0][np.abs(seen[0, :, 0] - 100 + 100 / 3) < 1e-6]
     near = seen[0][np.abs(seen[0, :, 0] - 100 + 100 / 0.05) < 1e-3]
@@ -121,4 +121,4 @@ def test_lines_are_cut_near_the_camera_and_left_out_behind_it() -> None:
 
 
 def test_nothing_is_seen_of_nothing() -> None:
-    assert seen_segments(_camera(), []).shape == (0, 2, 2)
+    assert visible_segments(_camera(), []).shape == (0, 2, 2)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from shapely.geometry import Point, Polygon
 
-from diorama_core.editing.clipboard import copied, pasted_at
+from diorama_core.editing.clipboard import clip_of, paste_at
 from diorama_core.editing.placing import free_spot
 from diorama_core.errors import EditRefused, SceneError
 from diorama_core.geometry.openings import with_openings
@@ -25,7 +25,7 @@ from diorama_core.geometry.rooms import (
 from diorama_core.importing.scene_import import import_scene
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene import edits
-from diorama_core.scene.history import Entry, History, moved_last
+from diorama_core.scene.history import Entry, History, move_last
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis import sample_cameras
@@ -114,7 +114,7 @@ def test_what_is_put_into_a_home_comes_to_the_room_looked_at(home: tuple[MadeHom
         part = room_around(scene, seen)
         assert part.rooms == (room,)
         assert room_around(scene, seen, {r.id for r in scene.rooms if r != room}).rooms != (room,)
-        after, heads = pasted_at(scene, copied(scene, [table.id]), seen)
+        after, heads = paste_at(scene, clip_of(scene, [table.id]), seen)
         assert {rooms_of_objects(after)[i] for i in heads} == {room.id}
         assert {edge.parent for edge in after.supports if edge.child in heads} == {room.floor}
         lowest = min(float(after.object(i).corners_world[:, 2].min()) for i in heads)
@@ -153,12 +153,12 @@ def test_rooms_are_renamed_and_undone_apart_from_each_other(home: tuple[MadeHome
     both = edits.set_room(named, second.id, name="office")
     history = History.start(scene).commit(Entry("name the study", named, author="Ann"))
     history = history.commit(Entry("name the office", both, author="Bo"))
-    undone = moved_last(history, 1).undo().current.scene
+    undone = move_last(history, 1).undo().current.scene
     assert [r.name for r in undone.rooms[:2]] == [first.name, "office"]
     again = edits.set_room(named, first.id, name="den")
     history = History.start(scene).commit(Entry("a", named, author="Ann")).commit(Entry("b", again, author="Bo"))
     with pytest.raises(EditRefused, match="the room"):
-        moved_last(history, 1)
+        move_last(history, 1)
     for room, name in (("nothing", "study"), (first.id, " ")):
         with pytest.raises(EditRefused):
             edits.set_room(scene, room, name=name)

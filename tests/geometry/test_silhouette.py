@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.geometry.projection import edges_of_cuboid
-from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster, clipped_bounds, is_circle
+from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster, clip_bounds, is_circle
 from diorama_core.geometry.window import Window, soft_iou
 from diorama_core.render.raycast import render_buffers
 from diorama_core.scene.types import Camera, Intrinsics, Pose, box_corners
@@ -53,7 +53,7 @@ def test_bounds_of_the_hull_are_those_of_the_vertices() -> None:
 
 def test_bounds_are_clipped_to_the_photo_and_missing_out_of_sight() -> None:
     wide, behind = box_corners((9.0, 1.0, 1.0)) + np.eye(3)[2] * 2, box_corners((1.0, 1.0, 1.0)) - np.eye(3)[2] * 5
-    bounds = clipped_bounds(CAMERA, np.stack([wide.T, behind.T], axis=1), edges_of_cuboid())
+    bounds = clip_bounds(CAMERA, np.stack([wide.T, behind.T], axis=1), edges_of_cuboid())
     assert (bounds[0, 0], bounds[0, 2]) == pytest.approx((0.0, 64.0))
     assert np.isnan(bounds[1]).all()
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.geometry.sphere import directions, directions_at, level_axes, perspective, sampled, sphere_pixels
+from diorama_core.geometry.sphere import directions, directions_at, level_axes, perspective, sample, sphere_pixels
 from diorama_core.scene.types import Camera, Intrinsics
 
 ANGLES = st.floats(-3.1, 3.1)
@@ -45,4 +45,4 @@ def test_a_view_shows_each_direction_as_the_sphere_does(azimuth: float) -> None:
     rays = Camera(k, T).rays(np.stack([x, y], axis=-1))
     true = 127.5 + 127.5 * rays / np.linalg.norm(rays, axis=-1, keepdims=True)
     assert np.abs(seen - true).max() < 4.0
-    assert np.abs(sampled(picture, away).astype(int) - picture).max() <= 1
+    assert np.abs(sample(picture, away).astype(int) - picture).max() <= 1

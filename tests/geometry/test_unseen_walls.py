@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.editing.plan_edits import empty_room
-from diorama_core.geometry.unseen_walls import HEAD_M, SILL_M, closed_room, unseen_parts
+from diorama_core.geometry.unseen_walls import HEAD_M, SILL_M, close_room, unseen_parts
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject
 
 
@@ -23,7 +23,7 @@ def with_window(scene: Scene) -> Scene:
 def test_a_whole_room_is_left_alone() -> None:
     scene = room()
     assert unseen_parts(scene).planes == ()
-    assert closed_room(scene) is scene
+    assert close_room(scene) is scene
 
 
 def test_a_missing_wall_stands_where_it_was() -> None:

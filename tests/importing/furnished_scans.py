@@ -9,7 +9,7 @@ from diorama_core.evaluation.benchmarks.cases import furnish, recipe
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Scene
-from diorama_core.synthesis.scan import SyntheticFrame, scanned
+from diorama_core.synthesis.scan import SyntheticFrame, scan
 from diorama_core.synthesis.splits import split_library
 from tests.few_shapes import few_shapes
 from tests.made_once import made_once
@@ -22,7 +22,7 @@ def living_room() -> tuple[Scene, tuple[SyntheticFrame, ...]]:
     def make() -> tuple[Scene, tuple[SyntheticFrame, ...]]:
         tested = split_library(built_in_library(), "test")
         scene = furnish(recipe(1, 1, 0)[0], tested)
-        return scene, scanned(scene, tested, 0, places=3, turns=8)
+        return scene, scan(scene, tested, 0, places=3, turns=8)
 
     return made_once("scanned living room", make)
 

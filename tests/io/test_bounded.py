@@ -30,7 +30,7 @@ from diorama_core.io.bounded import (
     read_bytes,
     read_json,
     read_picture,
-    shortened,
+    shorten,
 )
 
 
@@ -134,9 +134,9 @@ def test_a_jpeg_may_be_decoded_smaller_but_never_below_what_is_wanted() -> None:
 
 
 def test_messages_are_one_short_line() -> None:
-    assert shortened("a\nb\x1b[31m \ud800") == "a b[31m ?"
-    assert len(shortened("x" * 500)) == 200
-    assert shortened("x" * 200) == "x" * 200
+    assert shorten("a\nb\x1b[31m \ud800") == "a b[31m ?"
+    assert len(shorten("x" * 500)) == 200
+    assert shorten("x" * 200) == "x" * 200
     assert megabytes(64_000_000) == "64 MB"
     assert (megabytes(100_000), megabytes(99_000)) == ("0.1 MB", "99 kB")
     assert megabytes(1_500) == "1.5 kB"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from diorama_core.errors import InputError
-from diorama_core.io.contained import ContainedFiles, shown
+from diorama_core.io.contained import ContainedFiles, quote
 
 
 @pytest.fixture
@@ -86,5 +86,5 @@ def test_a_root_that_is_a_link_was_named_by_a_person(files: ContainedFiles, tmp_
 
 
 def test_foreign_names_are_shown_short_and_printable() -> None:
-    assert shown("a\x1b[31m\nb") == "'a?[31m?b'"
-    assert len(shown("x" * 500)) == 82
+    assert quote("a\x1b[31m\nb") == "'a?[31m?b'"
+    assert len(quote("x" * 500)) == 82

@@ -9,26 +9,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diorama_core.io.derived import derived, read_arrays, read_derived, write_arrays, write_derived
+from diorama_core.io.derived import derive, read_arrays, read_derived, write_arrays, write_derived
 from tests.somebody_else import delete_first
 
 
 def test_bytes_are_made_once(tmp_path: Path) -> None:
     path, made = tmp_path / "kind" / "file", []
     for _ in range(3):
-        assert derived(path, lambda: made.append(1) or b"content", bytes) == b"content"
+        assert derive(path, lambda: made.append(1) or b"content", bytes) == b"content"
     assert len(made) == 1
 
 
 def test_what_is_damaged_is_made_again(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     path = tmp_path / "file.json"
     path.write_bytes(b"[1, 2")
-    assert derived(path, lambda: b"[1, 2, 3]", json.loads) == [1, 2, 3]
+    assert derive(path, lambda: b"[1, 2, 3]", json.loads) == [1, 2, 3]
     assert path.read_bytes() == b"[1, 2, 3]"
     assert caplog.text.count("is damaged") == 1
     path.unlink()
     os.mkfifo(path)
-    assert derived(path, lambda: b"[4]", json.loads) == [4], "nobody waits for a pipe"
+    assert derive(path, lambda: b"[4]", json.loads) == [4], "nobody waits for a pipe"
 
 
 def test_arrays_come_back_as_they_were(tmp_path: Path) -> None:
@@ -61,7 +61,7 @@ def test_a_damaged_file_counts_as_absent(tmp_path: Path, damage: str) -> None:
 def test_a_folder_that_cannot_be_written_costs_one_warning(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "taken").write_text("a file")
     path = tmp_path / "taken" / "file"
-    assert derived(path, lambda: b"content", bytes) == b"content"
+    assert derive(path, lambda: b"content", bytes) == b"content"
     assert len(caplog.records) == 1
     assert "cannot cache files" in caplog.text
     assert read_derived(path) is None

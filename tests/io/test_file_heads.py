@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from diorama_core.errors import InputError
-from diorama_core.io.contained import content_of, unpacked
+from diorama_core.io.contained import content_of, unpack
 from diorama_core.io.file_heads import OTHER_FILES, head_of, what_else
 
 
@@ -66,7 +66,7 @@ def test_every_other_file_has_advice() -> None:
 
 def test_an_archive_is_unpacked_for_a_while_and_its_only_folder_entered(tmp_path: Path) -> None:
     path = zipped(tmp_path / "a.zip", scan__room__a=b"1", scan__room__b=b"2")
-    with unpacked(path) as folder:
+    with unpack(path) as folder:
         inside = content_of(folder)
         assert inside.name == "room"
     assert not folder.exists()
@@ -76,8 +76,8 @@ def test_a_bomb_and_a_broken_archive_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "bomb.zip"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("zeros", bytes(30_000_000))
-    with pytest.raises(InputError, match="unpacks to"), unpacked(path, most=10_000_000):
+    with pytest.raises(InputError, match="unpacks to"), unpack(path, most=10_000_000):
         pass
     (tmp_path / "cut.zip").write_bytes(path.read_bytes()[:200])
-    with pytest.raises(InputError, match="cannot be unpacked"), unpacked(tmp_path / "cut.zip"):
+    with pytest.raises(InputError, match="cannot be unpacked"), unpack(tmp_path / "cut.zip"):
         pass

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.editing.homes import joined
+from diorama_core.editing.homes import join
 from diorama_core.geometry.rooms import rooms_of_objects
 from diorama_core.layout.recipes import RoomByRoom, recipe
 from diorama_core.progress import Progress
@@ -20,7 +20,7 @@ SHAPE = ("picture_a", PlainLibrary().shape("picture_a").size_m)
 def test_rooms_of_a_home_are_tidied_one_by_one() -> None:
     one = with_door(furnished_scene(), "door", "wall_3", 0.3, SHAPE)
     other = with_door(furnished_scene(), "door", "wall_1", 0.3, SHAPE)
-    home = joined(one, other, "door", "door").scene
+    home = join(one, other, "door", "door").scene
     twins = ("chair_1", "chair_1-2")
     for name in twins:  # into the table of its own room
         table = home.object(name.replace("chair_1", "table_1"))

@@ -3,7 +3,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypedDict, Unpack
 
-from diorama_core.library.browsing import Filters, browsed, one_of_each
+from diorama_core.library.browsing import Filters, browse, one_of_each
 from diorama_core.library.record import Shape
 
 
@@ -27,7 +27,7 @@ class Known(TypedDict, total=False):
 
 
 def ids(filters: Filters, **known: Unpack[Known]) -> list[str]:
-    return [s.id for s in browsed(SHAPES, filters, **known)]
+    return [s.id for s in browse(SHAPES, filters, **known)]
 
 
 def test_filters_are_taken_together() -> None:

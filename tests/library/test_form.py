@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.form import agrees, compared, form_at, form_of
+from diorama_core.library.form import agrees, compare, form_at, form_of
 from diorama_core.library.slots import Slot
 
 LIBRARY = built_in_library()
@@ -101,4 +101,4 @@ def test_statements_agree_with_numbers_and_squares_with_rectangles() -> None:
     assert agrees("square", "rectangular")
     assert not agrees("yes", 0)
     assert not agrees(2, 3)
-    assert compared({"top": "round", "back": "high"}, {"top": "oval", "base": "sled"}) == {"top": False}
+    assert compare({"top": "round", "back": "high"}, {"top": "oval", "base": "sled"}) == {"top": False}

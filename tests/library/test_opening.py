@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diorama_core.library.catalogue import BuiltInLibrary, built_in_library
-from diorama_core.library.opening import OpenedShapes, can_open, opened_parts
+from diorama_core.library.opening import OpenedShapes, can_open, open_parts
 
 
 @pytest.fixture(scope="module")
@@ -20,17 +20,17 @@ def door(library: BuiltInLibrary) -> str:
 def test_doors_open_and_sofas_do_not(library: BuiltInLibrary, door: str) -> None:
     sofa = library.in_category("sofa")[0].id
     assert not can_open(library, sofa)
-    assert opened_parts(library, sofa, 0.5) is library.parts(sofa)
-    assert opened_parts(library, door, 0.0) is library.parts(door)
+    assert open_parts(library, sofa, 0.5) is library.parts(sofa)
+    assert open_parts(library, door, 0.0) is library.parts(door)
 
 
 def test_a_leaf_swings_about_its_hinge_and_the_frame_stays(library: BuiltInLibrary, door: str) -> None:
-    closed, opened = library.parts(door).bounds, opened_parts(library, door, 1.0).bounds
+    closed, opened = library.parts(door).bounds, open_parts(library, door, 1.0).bounds
     assert np.ptp(opened, axis=0)[0] > np.ptp(closed, axis=0)[0] + 0.4, "the leaf stands in the room"
     np.testing.assert_allclose(np.ptp(opened, axis=0)[2], np.ptp(closed, axis=0)[2], atol=0.01)
-    half = opened_parts(library, door, 0.5).bounds
+    half = open_parts(library, door, 0.5).bounds
     assert np.ptp(closed, axis=0)[0] < np.ptp(half, axis=0)[0] < np.ptp(opened, axis=0)[0]
-    assert OpenedShapes(library, 0.5).parts(door) is opened_parts(library, door, 0.5), "made once"
+    assert OpenedShapes(library, 0.5).parts(door) is open_parts(library, door, 0.5), "made once"
 
 
 def test_what_turns_keeps_its_form_in_a_stretched_shape(library: BuiltInLibrary, door: str) -> None:
@@ -38,7 +38,7 @@ def test_what_turns_keeps_its_form_in_a_stretched_shape(library: BuiltInLibrary,
     scale = (1.0, 1.6, 0.8)
 
     def area(share: float) -> float:
-        mesh = opened_parts(library, door, share, scale).to_geometry().copy()
+        mesh = open_parts(library, door, share, scale).to_geometry().copy()
         mesh.vertices = np.asarray(mesh.vertices) * scale
         return float(mesh.area)
 

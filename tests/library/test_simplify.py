@@ -10,7 +10,7 @@ import trimesh
 
 from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_core.library.catalogue import BuiltInLibrary, built_in_library
-from diorama_core.library.simplify import simplified_glb
+from diorama_core.library.simplify import simplify_glb
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def triangles(scene: trimesh.Scene) -> int:
 
 def test_a_bed_keeps_its_size_materials_and_pictures(library: BuiltInLibrary) -> None:
     heavy = library.glb("bed-channel-green")
-    before, after = scene_of(heavy), scene_of(simplified_glb(heavy, 600))
+    before, after = scene_of(heavy), scene_of(simplify_glb(heavy, 600))
     assert triangles(before) > 8000
     assert triangles(after) < 0.2 * triangles(before)
     np.testing.assert_allclose(after.bounds, before.bounds, atol=0.03)
@@ -45,7 +45,7 @@ def test_thin_rods_of_metal_beds_stay(library: BuiltInLibrary) -> None:
     assert beds, "the library has beds with frames of metal"
     for shape in beds:
         heavy = library.glb(shape)
-        before, after = scene_of(heavy), scene_of(simplified_glb(heavy, 400))
+        before, after = scene_of(heavy), scene_of(simplify_glb(heavy, 400))
         assert set(before.geometry) == set(after.geometry)
         for name, part in after.geometry.items():
             assert part.area > 0.75 * before.geometry[name].area, f"{shape}: {name}"
@@ -65,7 +65,7 @@ def pieces(scene: trimesh.Scene) -> np.ndarray:
 def test_every_rail_and_wire_stays(library: BuiltInLibrary, shape: str) -> None:
     """A part keeps most of its surface even where some of its rails vanish: each piece is looked at."""
     heavy = library.glb(shape)
-    before, after = pieces(scene_of(heavy)), pieces(scene_of(simplified_glb(heavy, 400)))
+    before, after = pieces(scene_of(heavy)), pieces(scene_of(simplify_glb(heavy, 400)))
     gone = [p for p in before if np.abs(after - p).max(axis=1).min() > 0.04]
     assert len(before) > 20
     assert gone == []
@@ -73,13 +73,13 @@ def test_every_rail_and_wire_stays(library: BuiltInLibrary, shape: str) -> None:
 
 def test_what_is_light_enough_stays_as_it_is(library: BuiltInLibrary) -> None:
     light = library.glb("bed-channel-green")
-    assert simplified_glb(light, 50_000) is light
+    assert simplify_glb(light, 50_000) is light
 
 
 def test_models_with_parts_it_does_not_know_stay_as_they_are() -> None:
     points = trimesh.Scene(trimesh.PointCloud(np.random.default_rng(0).normal(size=(5000, 3))))
     data = bytes(points.export(file_type="glb"))
-    assert simplified_glb(data, 100) is data
+    assert simplify_glb(data, 100) is data
 
 
 def test_shapes_are_sent_lighter_when_asked_and_the_fewer_the_finer(library: BuiltInLibrary) -> None:

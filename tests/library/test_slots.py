@@ -6,7 +6,7 @@ import trimesh
 from trimesh.visual.material import PBRMaterial
 
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.slots import matched, rectangle_of, slots_of
+from diorama_core.library.slots import match, rectangle_of, slots_of
 from diorama_core.scene.types import PhotoMaterial
 
 
@@ -42,9 +42,9 @@ def test_every_built_in_shape_has_slots_of_known_roles() -> None:
 
 def test_materials_go_to_their_slot_main_to_main_and_role_to_role() -> None:
     parts = trimesh.Scene({"seat": box((1, 1, 1), "brown leather"), "legs": box((0.5, 0.5, 0.5), "steel")})
-    found = matched(slots_of(parts), [material("fabric", main=True), material("wood"), material("metal 2")])
+    found = match(slots_of(parts), [material("fabric", main=True), material("wood"), material("metal 2")])
     assert {slot: m.main for slot, m in found.items()} == {"leather": True}
-    found = matched(slots_of(parts), [material("fabric", main=True), material("metal")])
+    found = match(slots_of(parts), [material("fabric", main=True), material("metal")])
     assert set(found) == {"leather", "metal"}
 
 

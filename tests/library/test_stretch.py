@@ -13,7 +13,7 @@ from diorama_core.library import furniture
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture.model import built, mesh_of, scene_of
 from diorama_core.library.part_notes import KEY, PartNotes
-from diorama_core.library.stretch import EVEN, MIN_UNEVEN, AxisMap, local_growth, relative_scale, stretched_parts
+from diorama_core.library.stretch import EVEN, MIN_UNEVEN, AxisMap, local_growth, relative_scale, stretch_parts
 
 factors = st.floats(0.6, 1.7)
 
@@ -37,7 +37,7 @@ def merged(scene: trimesh.Scene) -> trimesh.Trimesh:
 
 def test_a_longer_table_has_no_thicker_legs() -> None:
     factor = 1.5
-    stretched = stretched_parts(table(), (1.0, factor, 1.0))
+    stretched = stretch_parts(table(), (1.0, factor, 1.0))
     for name, mesh in stretched.geometry.items():
         thickness = np.ptp(mesh.bounds, axis=0) * (1.0, factor, 1.0)
         if name.startswith("leg"):
@@ -52,7 +52,7 @@ def test_a_part_stretches_along_the_sides_that_its_author_names() -> None:
         parts[name] = trimesh.creation.box((0.5, 0.5, 0.5))
         parts[name].apply_translation((0.0, 0.55 * (place - 1), 0.0))
         parts[name].metadata = {KEY: PartNotes(name, None, stretches).as_json()}
-    stretched = stretched_parts(trimesh.Scene(parts), (1.0, 2.0, 1.0))
+    stretched = stretch_parts(trimesh.Scene(parts), (1.0, 2.0, 1.0))
     widths = {name: 2.0 * float(np.ptp(mesh.bounds[:, 1])) for name, mesh in stretched.geometry.items()}
     assert widths["middle"] == pytest.approx(0.5, rel=0.05)
     assert widths["left"] == pytest.approx(widths["right"], rel=0.01)
@@ -71,7 +71,7 @@ def test_an_imported_table_of_one_mesh_keeps_its_legs_within_two_percent(
     whole = trimesh.boolean.union(list(table(thick, inset).geometry.values()), engine="manifold")
     assert whole.is_watertight
     scale = np.array([1.0, factor, 1.0])
-    stretched = merged(stretched_parts(trimesh.Scene({"all": whole}), relative_scale(scale)))
+    stretched = merged(stretch_parts(trimesh.Scene({"all": whole}), relative_scale(scale)))
     assert stretched.is_watertight
     np.testing.assert_allclose(stretched.bounds, whole.bounds, atol=1e-9)
     low = stretched.vertices[stretched.vertices[:, 2] < -0.3] * scale
@@ -95,7 +95,7 @@ def test_slices_together_grow_as_the_whole_does_and_none_folds(thin: list[float]
 def test_handles_keep_their_form() -> None:
     front, handle = trimesh.creation.box((0.02, 0.8, 0.6)), trimesh.creation.box((0.004, 0.1, 0.02))
     handle.apply_translation((0.008, 0.3, 0.0))
-    stretched = stretched_parts(trimesh.Scene({"front": front, "handle": handle}), (1.0, 1.5, 1.0))
+    stretched = stretch_parts(trimesh.Scene({"front": front, "handle": handle}), (1.0, 1.5, 1.0))
     assert np.ptp(stretched.geometry["handle"].bounds, axis=0)[1] * 1.5 == pytest.approx(0.1, abs=1e-6)
 
 
@@ -105,7 +105,7 @@ def test_the_bounding_box_stays_and_nothing_folds(scale: tuple[float, float, flo
     design = next(d for d in furniture.designs() if d.category == category)
     parts = scene_of(built(design))
     relative = relative_scale(np.array(scale))
-    before, after = merged(parts), merged(stretched_parts(parts, relative))
+    before, after = merged(parts), merged(stretch_parts(parts, relative))
     np.testing.assert_allclose(after.bounds, before.bounds, atol=1e-4)
     assert np.isfinite(after.vertices).all()
     assert after.faces.shape == before.faces.shape
@@ -117,7 +117,7 @@ def test_it_is_nearer_than_a_plain_stretch_to_what_the_design_is_at_that_size() 
         factor = np.array([1.0, 1.4, 1.0])
         truth = mesh_of(built(replace(design, size_m=tuple(np.array(design.size_m) * factor))))
         base = scene_of(built(design))
-        for found, off in ((stretched_parts(base, relative_scale(factor)), near), (base, plain)):
+        for found, off in ((stretch_parts(base, relative_scale(factor)), near), (base, plain)):
             mesh = merged(found)
             mesh.apply_scale(factor)
             sampled = cKDTree(trimesh.sample.sample_surface(truth, 200_000, seed=0)[0])
@@ -129,7 +129,7 @@ def test_nearly_even_scales_share_the_shape() -> None:
     assert relative_scale(np.array([1.3, 1.3, 1.35])) == EVEN
     assert relative_scale(np.array([1.0, 1.5, 1.0])) != EVEN
     parts = built_in_library().parts("picture-hills-oak")
-    assert stretched_parts(parts, EVEN) is parts
+    assert stretch_parts(parts, EVEN) is parts
 
 
 STEPS = st.lists(st.floats(0.1, 5.0), min_size=3, max_size=3)

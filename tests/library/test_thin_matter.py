@@ -10,7 +10,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.library.thin_matter import BINS, kept_thin_matter, thin_matter
+from diorama_core.library.thin_matter import BINS, derive_thin_matter, thin_matter
 
 
 def box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> trimesh.Trimesh:
@@ -90,12 +90,12 @@ def test_what_was_found_is_kept_by_the_shape_and_found_again_when_damaged(
 
     monkeypatch.setattr("diorama_core.library.thin_matter.thin_matter", probe)
     for _ in range(2):
-        np.testing.assert_array_equal(kept_thin_matter(vertices, faces, 0, tmp_path), thin_matter(vertices, faces, 0))
+        np.testing.assert_array_equal(derive_thin_matter(vertices, faces, 0, tmp_path), thin_matter(vertices, faces, 0))
     assert probed == [0]
-    kept_thin_matter(vertices, faces, 1, tmp_path)
-    kept_thin_matter(vertices + 0.1, faces, 0, tmp_path)
+    derive_thin_matter(vertices, faces, 1, tmp_path)
+    derive_thin_matter(vertices + 0.1, faces, 0, tmp_path)
     assert probed == [0, 1, 0]
     for path in tmp_path.iterdir():
         path.write_bytes(path.read_bytes()[:100])
-    np.testing.assert_array_equal(kept_thin_matter(vertices, faces, 0, tmp_path), thin_matter(vertices, faces, 0))
+    np.testing.assert_array_equal(derive_thin_matter(vertices, faces, 0, tmp_path), thin_matter(vertices, faces, 0))
     assert len(probed) == 4

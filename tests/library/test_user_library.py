@@ -9,14 +9,14 @@ import pytest
 import trimesh
 
 from diorama_core.errors import LibraryError
-from diorama_core.library.ingest.shaping import packed_shape
+from diorama_core.library.ingest.shaping import pack_shape
 from diorama_core.library.record import Shape
 from diorama_core.library.store import StoredLibrary
 from diorama_core.library.user_library import (
     OwnModels,
     ProjectShapes,
     UserLibrary,
-    offered_shapes,
+    offer_shapes,
     read_own_models,
     write_own_models,
 )
@@ -57,7 +57,7 @@ def shared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> UserLibrary:
 
 
 def _chair(shape_id: str) -> object:
-    return packed_shape(
+    return pack_shape(
         Shape(shape_id, "chair", "a chair", (1.0, 1.0, 1.0)), [trimesh.creation.box((0.5, 0.5, 0.9))], None, "", ()
     )
 
@@ -67,15 +67,15 @@ def _ids(library) -> set[str]:
 
 
 def test_builds_choose_no_uploads_unless_asked(shared: UserLibrary) -> None:
-    offered = offered_shapes(shared)
+    offered = offer_shapes(shared)
     assert "my-chair" in _ids(shared)
     assert "my-chair" not in _ids(offered)
     assert "my-chair" not in {s.id for s in offered.shapes()}
     assert offered.shape("my-chair").category == "chair", "scenes that hold it are read as before"
     shared.keep_order(replace(shared.own_models, in_builds=True))
-    assert "my-chair" in _ids(offered_shapes(shared))
+    assert "my-chair" in _ids(offer_shapes(shared))
     shared.keep_order(shared.own_models.without("my-chair"))
-    assert "my-chair" not in _ids(offered_shapes(shared))
+    assert "my-chair" not in _ids(offer_shapes(shared))
 
 
 def test_the_shapes_of_an_imported_scene_are_of_their_project_alone(shared: UserLibrary, tmp_path: Path) -> None:
@@ -83,11 +83,11 @@ def test_the_shapes_of_an_imported_scene_are_of_their_project_alone(shared: User
     of_project = ProjectShapes(shared)
     of_project.show(tmp_path / "a" / "shapes")
     assert "scanned-chair" in _ids(of_project)
-    assert _ids(offered_shapes(of_project)) == {"chair_a", "chair_b", "chair_c"}
+    assert _ids(offer_shapes(of_project)) == {"chair_a", "chair_b", "chair_c"}
     of_project.show(tmp_path / "b" / "shapes")
     assert "scanned-chair" not in _ids(of_project)
 
 
 def test_a_library_to_which_nothing_is_added_is_offered_whole() -> None:
     library = PlainLibrary()
-    assert offered_shapes(library) is library
+    assert offer_shapes(library) is library

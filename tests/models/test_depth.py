@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.errors import UnavailableError
-from diorama_core.models.depth import SIDE, DepthAnything3, Metric3d, Moge2, recovered
+from diorama_core.models.depth import SIDE, DepthAnything3, Metric3d, Moge2, recover
 from diorama_core.models.runtime import NetworkError, SessionPool
 from diorama_core.scene.types import Intrinsics
 from tests.models.tiny_networks import export
@@ -40,7 +40,7 @@ def test_camera_and_metres_come_back_from_affine_points(focal: float, shift: flo
     points, normals = _room(focal)
     affine = points / unit
     affine[..., 2] -= shift * affine[..., 2].min()
-    seen = recovered(affine, -normals if flip else normals, np.ones((HEIGHT, WIDTH)), unit)
+    seen = recover(affine, -normals if flip else normals, np.ones((HEIGHT, WIDTH)), unit)
     assert seen.intrinsics.fx == pytest.approx(focal, rel=1e-3)
     np.testing.assert_allclose(seen.depth_m, points[..., 2], rtol=2e-3)
     np.testing.assert_allclose(seen.normals_camera, normals, atol=1e-6)
@@ -53,7 +53,7 @@ def test_noise_and_invalid_pixels_do_little_harm(rng: np.random.Generator) -> No
     validity[:20, :30] = 0.1
     noisy[:20, :30] = np.nan
     noisy[..., 2] -= 0.5
-    seen = recovered(noisy, normals, validity, 1.0)
+    seen = recover(noisy, normals, validity, 1.0)
     assert seen.intrinsics.fx == pytest.approx(110.0, rel=0.05)
     assert (seen.depth_m[:20, :30] == 0).all()
     assert (seen.normals_camera[:20, :30] == 0).all()
@@ -65,7 +65,7 @@ def test_a_given_focal_length_is_retained() -> None:
     points, normals = _room(110.0)
     points[..., 2] -= 0.7
     k = Intrinsics(WIDTH, HEIGHT, 110.0, 110.0, WIDTH / 2, HEIGHT / 2)
-    seen = recovered(points, normals, np.ones((HEIGHT, WIDTH)), 1.0, k)
+    seen = recover(points, normals, np.ones((HEIGHT, WIDTH)), 1.0, k)
     assert seen.intrinsics == k
     np.testing.assert_allclose(seen.depth_m, points[..., 2] + 0.7, rtol=2e-3)
 
@@ -74,14 +74,14 @@ def test_a_flat_wall_leaves_the_focal_length_open_and_gets_a_usual_one() -> None
     points = _room(110.0)[0]
     points *= (4.0 / points[..., 2])[..., None]
     wall = np.broadcast_to([0.0, 0.0, -1.0], points.shape)
-    seen = recovered(points, wall, np.ones((HEIGHT, WIDTH)), 1.0)
+    seen = recover(points, wall, np.ones((HEIGHT, WIDTH)), 1.0)
     assert 0.4 * WIDTH < seen.intrinsics.fx < 1.6 * WIDTH
 
 
 def test_a_picture_without_geometry_is_one_clear_line() -> None:
     points, normals = _room(110.0)
     with pytest.raises(UnavailableError, match="embedded"):
-        recovered(points, normals, np.zeros((HEIGHT, WIDTH)), 1.0)
+        recover(points, normals, np.zeros((HEIGHT, WIDTH)), 1.0)
 
 
 class _Moge(torch.nn.Module):

@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from diorama_core.errors import UnavailableError
 from diorama_core.io.assets import FOLDER
 from diorama_core.models.images import CROP_SIDE, box_crop, box_geometry
-from diorama_core.models.recogniser import Recogniser, fitted, own_recogniser
+from diorama_core.models.recogniser import Recogniser, fit, own_recogniser
 
 
 @given(width=st.integers(20, 400), height=st.integers(20, 400))
 @settings(max_examples=25)
 def test_any_picture_is_fitted_into_whole_cells(width: int, height: int) -> None:
-    pixels, scale = fitted(np.full((height, width, 3), 200, np.uint8), 64 * 96)
+    pixels, scale = fit(np.full((height, width, 3), 200, np.uint8), 64 * 96)
     assert pixels.shape[2] % 32 == 0
     assert pixels.shape[3] % 32 == 0
     assert abs(width * scale - pixels.shape[3]) <= 33

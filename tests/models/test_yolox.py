@@ -10,7 +10,7 @@ import pytest
 
 from diorama_core.models.boxes import Detections, without_doubles, without_parts_of_same
 from diorama_core.models.runtime import SessionPool
-from diorama_core.models.yolox import Yolox, letterboxed
+from diorama_core.models.yolox import Yolox, letterbox
 from diorama_core.perception.foundation.detection import EverydayDetection
 from diorama_core.progress import Progress
 from tests.conftest import PhotoEntry
@@ -63,7 +63,7 @@ def _iou(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def test_the_letterbox_keeps_proportions_and_is_grey_beyond() -> None:
-    pixels, scale = letterboxed(np.full((100, 200, 3), (10, 20, 30), np.uint8), 416)
+    pixels, scale = letterbox(np.full((100, 200, 3), (10, 20, 30), np.uint8), 416)
     assert scale == pytest.approx(2.08)
     assert tuple(pixels[0, :, 0, 0]) == (30.0, 20.0, 10.0)
     assert tuple(pixels[0, :, -1, -1]) == (114.0, 114.0, 114.0)

@@ -10,7 +10,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.multiview.found_poses import UnposedPhoto, _left_out, find_poses
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.scene.types import Camera
-from diorama_core.synthesis import furnished_room
+from diorama_core.synthesis import furnish_room
 from diorama_core.synthesis.cameras import level_pose, sample_cameras
 from diorama_core.synthesis.truth import Studio
 
@@ -22,7 +22,7 @@ SIZE = (640, 480)
 def photos_and_cameras() -> tuple[list[UnposedPhoto], list[Camera]]:
     """Three views of a rendered room from places side by side, and one of nothing."""
     library = built_in_library()
-    scene = furnished_room(7006, "dining", library, clutter=8)
+    scene = furnish_room(7006, "dining", library, clutter=8)
     first = sample_cameras(scene, library, 7006, 1, SIZE)[0]
     studio, eye, ahead = Studio(scene, library), first.position, first.T_world_camera[:3, 2]
     target, yaw = eye + 2.5 * ahead, float(np.arctan2(ahead[1], ahead[0]))

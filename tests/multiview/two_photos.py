@@ -16,7 +16,7 @@ from diorama_core.project.storage import Project
 from diorama_core.protocols import Preview
 from diorama_core.scene.edits import remove
 from diorama_core.scene.types import Camera, Scene
-from diorama_core.synthesis import furnished_room
+from diorama_core.synthesis import furnish_room
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.cameras import level_pose, sample_cameras
 from diorama_core.synthesis.truth import Studio
@@ -48,7 +48,7 @@ def two_photos(size: tuple[int, int] = SIZE) -> TwoPhotos:
 
 def _made(size: tuple[int, int]) -> TwoPhotos:
     library = built_in_library()
-    room = furnished_room(7006, "dining", library, clutter=1)
+    room = furnish_room(7006, "dining", library, clutter=1)
     camera = sample_cameras(room, library, 7006, 1, size)[0]
     studio, eye, ahead = Studio(room, library), camera.position, camera.T_world_camera[:3, 2]
     yaw, target = float(np.arctan2(ahead[1], ahead[0])), eye + 2.5 * ahead

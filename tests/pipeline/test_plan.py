@@ -14,7 +14,7 @@ import pytest
 
 from diorama_core.arrangement.explain import strongest
 from diorama_core.artefacts import ArchitectureEstimate, Inputs, LabelledBox, PosedCandidates
-from diorama_core.editing.reconstructed import replaced
+from diorama_core.editing.reconstructed import replace_object
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.pipeline import plan
 from diorama_core.pipeline.plan import DEFAULTS, PLAN, assemble, evaluate
@@ -107,7 +107,7 @@ def test_correcting_nothing_gives_the_same_scene_byte_for_byte(room: Room) -> No
         box = LabelledBox(item.box, item.category, item.label)
         cache = project.stages_folder
         found = reconstruct_object(built.scene, inputs, LIBRARY, box, item.id, cache=cache)
-        assert scene_to_json(replaced(built.scene, item.id, found, LIBRARY)).encode() == scene_file
+        assert scene_to_json(replace_object(built.scene, item.id, found, LIBRARY)).encode() == scene_file
         here, there = found.item.candidates[0].pose, built.observed.object(item.id).candidates[0].pose
         assert np.allclose(here.position, there.position, atol=1e-9)
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.render.gathering import fallen_light
+from diorama_core.render.gathering import gather_light
 from diorama_core.render.lighting import Effort, Lighting, Spots, irradiance
 from diorama_core.render.picture import scene_view
 from diorama_core.render.shading import shoot
@@ -41,7 +41,7 @@ def test_an_even_sky_alone_lights_every_pixel_the_same() -> None:
     world, _, grid = world_and_grid()
     sky_alone = replace(LIGHT, window_irradiance=np.zeros(3))
     empty = World([])
-    fallen = fallen_light(empty, empty.shadow_caster(), grid, sky_alone, Effort(1, 1))
+    fallen = gather_light(empty, empty.shadow_caster(), grid, sky_alone, Effort(1, 1))
     assert np.allclose(fallen[grid.found], 0.5, atol=1e-5)
     assert (fallen[~grid.found] == 0).all()
     assert len(world.vertices)
@@ -50,7 +50,7 @@ def test_an_even_sky_alone_lights_every_pixel_the_same() -> None:
 def test_light_agrees_with_many_rays() -> None:
     """A quarter of the pixels with few rays each tells the light of all, as hundreds of rays a pixel do."""
     world, blockers, grid = world_and_grid()
-    fallen = fallen_light(world, blockers, grid, LIGHT, Effort(3, 3))
+    fallen = gather_light(world, blockers, grid, LIGHT, Effort(3, 3))
     at = np.nonzero(grid.found)
     chosen = tuple(a[::37] for a in at)
     spots = Spots(grid.points[chosen], grid.normals[chosen], grid.flat_normals[chosen])

@@ -49,7 +49,7 @@ def test_retained_on_disk_by_content(tmp_path: Path, monkeypatch: pytest.MonkeyP
     (retained,) = (tmp_path / "pictures").iterdir()
     assert retained.read_bytes() == first
     monkeypatch.setattr(thumbnails, "_CACHE", type(thumbnails._CACHE)(4))
-    monkeypatch.setattr(thumbnails, "_rendered", lambda *_: pytest.fail("rendered again"))
+    monkeypatch.setattr(thumbnails, "_render", lambda *_: pytest.fail("rendered again"))
     assert thumbnail(library, "cup-mug-white", 48, tmp_path / "pictures") == first
 
 

@@ -15,8 +15,8 @@ from diorama_core.render.view_features import (
     LAYOUT_WIDTH,
     colour_layout,
     layout_agreement,
-    painted_views,
-    squared_around,
+    paint_views,
+    square_around,
     window_around,
 )
 from tests.primitives import material
@@ -92,7 +92,7 @@ def test_views_show_faces_in_their_colours_and_shade() -> None:
     plain = render_templates(mesh, GRID)
     assert (templates.depth_codes == plain.depth_codes).all()
     assert ((face_ids >= 0) == templates.mask).all()
-    views = painted_views(templates, face_ids, appearance)
+    views = paint_views(templates, face_ids, appearance)
     assert (views[~templates.mask] == 0).all()
     lower = np.isin(face_ids, np.arange(len(box.faces)))
     assert (views[lower][:, 0] > 2 * views[lower][:, 1].astype(int)).all()
@@ -110,7 +110,7 @@ def test_all_that_the_square_shows_is_in_its_window(rng: np.random.Generator, co
     assert mask[window].size < 0.2 * mask.size
     alone = np.zeros_like(picture)
     alone[window] = picture[window]
-    whole, part = squared_around(mask, picture), squared_around(mask, alone)
+    whole, part = square_around(mask, picture), square_around(mask, alone)
     assert whole is not None
     assert part is not None
     np.testing.assert_array_equal(part, whole)

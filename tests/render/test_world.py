@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.render.appearance import Material, Surface
-from diorama_core.render.world import PlacedSurface, World, _filtered, _pyramid
+from diorama_core.render.world import PlacedSurface, World, _filter, _pyramid
 
 CHECKS = (255 * ((np.indices((64, 64)) // 4).sum(axis=0) % 2)).astype(np.uint8)[..., None].repeat(3, axis=2)
 
@@ -56,5 +56,5 @@ def test_a_surface_seen_aslant_is_blurred_more() -> None:
 def test_a_plain_picture_stays_plain_at_every_level(height: int, width: int, spread: float, seed: int) -> None:
     levels = _pyramid(np.full((height, width, 3), 0.3, np.float32))
     uv = np.random.default_rng(seed).uniform(-2, 2, (9, 2)).astype(np.float32)
-    found = _filtered(levels, uv, np.full(9, spread, np.float32), repeat=True)
+    found = _filter(levels, uv, np.full(9, spread, np.float32), repeat=True)
     np.testing.assert_allclose(found, 0.3, atol=1e-6)

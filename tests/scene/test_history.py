@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
-from diorama_core.scene.history import Entry, History, moved_last, moved_next
+from diorama_core.scene.history import Entry, History, move_last, move_next
 from diorama_core.scene.types import Scene, Support
 from tests.app.small_room import furnished_scene
 from tests.scene.strategies import scenes
@@ -109,7 +109,7 @@ def test_a_change_is_moved_past_those_of_others_and_undone_there() -> None:
     history = _history(
         ("B", "paint", _painted("lamp_1")), ("A", "move", _moved("chair_1")), ("A", "red", _painted("chair_2"))
     )
-    last = moved_last(history, 1)
+    last = move_last(history, 1)
     assert last.current.scene == history.current.scene
     assert [(e.author, e.label) for e in last.entries[1:]] == [("A", "move"), ("A", "red"), ("B", "paint")]
     undone = last.undo()
@@ -120,7 +120,7 @@ def test_a_change_is_moved_past_those_of_others_and_undone_there() -> None:
 
 def test_a_deletion_is_taken_back_where_it_was() -> None:
     history = _history(("B", "delete", lambda s: edits.remove(s, ["chair_1"])), ("A", "red", _painted("chair_2")))
-    back = moved_last(history, 1).undo().current.scene
+    back = move_last(history, 1).undo().current.scene
     assert [o.id for o in back.objects] == [o.id for o in furnished_scene().objects]
     assert back.support_of("chair_1") == furnished_scene().support_of("chair_1")
     assert back.object("chair_2").colour is not None
@@ -129,7 +129,7 @@ def test_a_deletion_is_taken_back_where_it_was() -> None:
 def test_what_others_changed_since_is_not_taken_back() -> None:
     history = _history(("B", "paint", _painted("chair_1")), ("A", "move", _moved("chair_1")))
     with pytest.raises(EditRefused, match="A has changed chair since, so “paint” stays"):
-        moved_last(history, 1)
+        move_last(history, 1)
 
 
 def test_what_others_built_on_is_not_taken_back() -> None:
@@ -141,12 +141,12 @@ def test_what_others_built_on_is_not_taken_back() -> None:
 
     history = _history(("B", "duplicate", added), ("A", "lamp onto the copy", on_it))
     with pytest.raises(EditRefused, match="A has since built on what would go"):
-        moved_last(history, 1)
+        move_last(history, 1)
 
 
 def test_an_undone_change_is_moved_before_those_of_others() -> None:
     history = _history(("A", "move", _moved("chair_1")), ("B", "paint", _painted("lamp_1"))).undo().undo()
-    next_ = moved_next(history, 2)
+    next_ = move_next(history, 2)
     done = next_.redo()
     assert done.current.author == "B"
     assert done.current.scene.object("lamp_1").colour is not None

@@ -10,11 +10,11 @@ import pytest
 from diorama_core.scene.types import Intrinsics
 from diorama_core.synthesis.photograph import (
     CameraResponse,
-    developed,
+    develop,
     falloff,
     middle_tone,
     noisy,
-    photographed,
+    photograph,
     white_gains,
 )
 
@@ -25,7 +25,7 @@ QUIET = CameraResponse(vignetting=0.0, full_well_e=1e9, read_noise_e=0.0, blur_p
 
 def test_exposure_does_not_depend_on_the_unit_of_light() -> None:
     light = np.random.default_rng(0).uniform(0.2, 1.0, (48, 64, 3))
-    dim, bright = (photographed(light * unit, K, GREY, QUIET).astype(int) for unit in (0.01, 100.0))
+    dim, bright = (photograph(light * unit, K, GREY, QUIET).astype(int) for unit in (0.01, 100.0))
     assert np.abs(dim - bright).max() <= 1
 
 
@@ -57,7 +57,7 @@ def test_noise_is_that_of_photons_and_of_reading() -> None:
 
 def test_the_same_seed_takes_the_same_photo() -> None:
     light = np.full((48, 64, 3), 0.3)
-    first, again, other = (photographed(light, K, GREY, seed=seed) for seed in (1, 1, 2))
+    first, again, other = (photograph(light, K, GREY, seed=seed) for seed in (1, 1, 2))
     assert (first == again).all()
     assert (first != other).any()
 
@@ -65,16 +65,16 @@ def test_the_same_seed_takes_the_same_photo() -> None:
 def test_white_balance_makes_the_rooms_light_white() -> None:
     warm = np.array([1.0, 0.8, 0.6])
     light = np.broadcast_to(warm * 0.5, (48, 64, 3)).copy()
-    neutral = photographed(light, K, warm, replace(QUIET, balance=1.0)).reshape(-1, 3).mean(axis=0)
+    neutral = photograph(light, K, warm, replace(QUIET, balance=1.0)).reshape(-1, 3).mean(axis=0)
     assert np.ptp(neutral) < 1.0
-    partly = photographed(light, K, warm, replace(QUIET, balance=0.5)).reshape(-1, 3).mean(axis=0)
+    partly = photograph(light, K, warm, replace(QUIET, balance=0.5)).reshape(-1, 3).mean(axis=0)
     assert partly[0] > partly[1] > partly[2]
     assert white_gains(warm, 0.0) == pytest.approx(np.ones(3))
 
 
 def test_highlights_keep_their_order_and_never_pass_white() -> None:
     light = np.linspace(0.0, 3.0, 300).reshape(1, -1, 1).repeat(3, axis=2)
-    shown = developed(light, CameraResponse())[0, :, 0].astype(int)
+    shown = develop(light, CameraResponse())[0, :, 0].astype(int)
     assert (np.diff(shown) >= 0).all()
     assert shown[0] == 0
     assert 200 < shown[99] < 255  # brightness 1 is bright, and not yet burnt out
@@ -85,9 +85,9 @@ def test_what_is_no_light_is_refused(wrong: float) -> None:
     light = np.full((48, 64, 3), 0.5)
     light[0, 0, 0] = wrong
     with pytest.raises(ValueError, match="finite and at least 0"):
-        photographed(light, K, GREY)
+        photograph(light, K, GREY)
 
 
 def test_a_picture_of_another_size_is_refused() -> None:
     with pytest.raises(ValueError, match="radiance is"):
-        photographed(np.ones((10, 10, 3)), K, GREY)
+        photograph(np.ones((10, 10, 3)), K, GREY)

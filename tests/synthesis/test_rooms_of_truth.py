@@ -12,7 +12,7 @@ from diorama_core.errors import LibraryError
 from diorama_core.layout.exact import mesh_overlap_m3
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Plane
-from diorama_core.synthesis import ROOM_KINDS, furnished_room, render_truth, sample_cameras
+from diorama_core.synthesis import ROOM_KINDS, furnish_room, render_truth, sample_cameras
 from diorama_core.synthesis.artefacts import photo_only, true_geometry, true_objects, true_supports
 from diorama_core.synthesis.finishes import FLOORS, WALLS, finish_picture
 from diorama_core.synthesis.furnisher import WALL_GAP_M, Furnisher
@@ -30,7 +30,7 @@ def library():
 
 @pytest.fixture(scope="module")
 def rooms(library):
-    return {kind: furnished_room(1, kind, library) for kind in ROOM_KINDS}
+    return {kind: furnish_room(1, kind, library) for kind in ROOM_KINDS}
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +69,7 @@ def test_supports_touch_what_they_name(rooms, library):
 
 
 def test_chairs_face_their_table(library):
-    scene = furnished_room(0, "dining", library)
+    scene = furnish_room(0, "dining", library)
     table = next(o for o in scene.objects if o.category == "table")
     chairs = [o for o in scene.objects if o.category == "chair"]
     assert len(chairs) >= 2
@@ -81,13 +81,13 @@ def test_chairs_face_their_table(library):
 
 
 def test_the_same_seed_gives_the_same_room_and_picture(rooms, view, library):
-    again = furnished_room(1, "living", library)
+    again = furnish_room(1, "living", library)
     assert [(o.id, o.shape_id) for o in again.objects] == [(o.id, o.shape_id) for o in rooms["living"].objects]
     assert all(np.array_equal(a.pose.matrix, b.pose.matrix) for a, b in zip(again.objects, rooms["living"].objects))
     camera = sample_cameras(again, library, 1, 1, SIZE)[0]
     second = render_truth(again, camera, library, SIZE, with_empty_room=False)
     assert second.inputs.photo.rgb.tobytes() == view.inputs.photo.rgb.tobytes()
-    other = furnished_room(2, "living", library)
+    other = furnish_room(2, "living", library)
     assert [o.shape_id for o in other.objects] != [o.shape_id for o in again.objects]
 
 

@@ -4,14 +4,14 @@ import numpy as np
 
 from diorama_core.geometry.sphere import sphere_pixels
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.synthesis import furnished_room
+from diorama_core.synthesis import furnish_room
 from diorama_core.synthesis.sphere import sphere_photo
 from diorama_core.synthesis.truth import Studio
 
 
 def test_a_thing_is_shown_where_it_is() -> None:
     library = built_in_library()
-    scene = furnished_room(3, "kitchen", library)
+    scene = furnish_room(3, "kitchen", library)
     T = np.eye(4)
     T[2, 3] = 1.4
     seen = sphere_photo(Studio(scene, library), T, 256)

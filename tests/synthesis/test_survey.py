@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.synthesis import ROOM_KINDS, furnished_room
+from diorama_core.synthesis import ROOM_KINDS, furnish_room
 from diorama_core.synthesis.finishes import FLOORS, WALLS, choose_finishes, colours_of, room_styles
 from diorama_core.synthesis.layout_rooms import box_library, generate_room
 from diorama_core.synthesis.plan import RoomPlan, Slope, room_plan
@@ -41,7 +41,7 @@ def test_attics_are_furnished_under_their_roof(rng):
     plan = room_plan(rng, (4.0, 4.0), (3.5, 3.5), "attic")
     assert 0.9 <= plan.roof_m(plan.outline).min() <= 1.4
     library = built_in_library()
-    scene = furnished_room(3, "bedroom", library, outline="attic")
+    scene = furnish_room(3, "bedroom", library, outline="attic")
     survey = survey_room("bedroom", scene, library)
     assert (survey.outline, survey.collisions, survey.outside) == ("attic", (), ())
     assert survey.objects >= 8

@@ -13,7 +13,7 @@ from diorama_core.synthesis.variants import (
     VariantMaker,
     VariantSettings,
     differences,
-    locked_where_restless,
+    lock_restless,
     stability_report,
 )
 from tests.export.scenes import scene_of
@@ -62,6 +62,6 @@ def test_what_falls_goes_back_to_its_place() -> None:
 def test_what_does_not_rest_in_the_room_is_locked() -> None:
     scene, library = scene_of("fittings")
     lifted = edits.move(scene, "lamp_1", scene.object("lamp_1").pose.moved(np.array([0.0, 0.0, 0.1])))
-    calm, locked = locked_where_restless(lifted, library)
+    calm, locked = lock_restless(lifted, library)
     assert locked == ("lamp_1",)
     assert not stability_report(calm, library).unstable

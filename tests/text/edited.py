@@ -13,7 +13,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.schema import scene_from_json
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Scene
-from diorama_core.synthesis.grammar import furnished_room
+from diorama_core.synthesis.grammar import furnish_room
 from diorama_core.text.edit_apply import EditApplier
 from diorama_core.text.edit_plan import Edit
 
@@ -29,7 +29,7 @@ def living_room() -> Scene:
 
 @cache
 def dining_room() -> Scene:
-    return furnished_room(2, "dining", built_in_library(), outline="box", clutter=6)
+    return furnish_room(2, "dining", built_in_library(), outline="box", clutter=6)
 
 
 def done(scene: Scene, *asked: Edit) -> Scene:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Scene
-from diorama_core.synthesis.grammar import furnished_room
+from diorama_core.synthesis.grammar import furnish_room
 from diorama_core.text.compose import compose_room
 from diorama_core.text.edit_grammar import edits_of
 from diorama_core.text.edit_plan import Insert, Move, Paint, Place, Remove, Resize, Restyle, Shift, Swap, Turn
@@ -30,7 +30,7 @@ def living() -> Scene:
 @pytest.fixture(scope="module")
 def dining() -> Scene:
     """A table on a rug with five chairs."""
-    return furnished_room(2, "dining", built_in_library(), outline="box", clutter=6)
+    return furnish_room(2, "dining", built_in_library(), outline="box", clutter=6)
 
 
 def on(*targets: str) -> list[Place]:

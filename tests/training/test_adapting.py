@@ -16,9 +16,9 @@ from diorama_core.training import train
 from diorama_core.training.adapting import (
     Adaptation,
     MixedPictures,
-    adapted_detector,
-    labelled_photos,
-    trained_detector,
+    adapt_detector,
+    load_detector,
+    read_photos,
 )
 from diorama_core.training.export import export_detector
 from diorama_core.training.networks import Detector, detector_loss
@@ -45,7 +45,7 @@ def rows_of(path: Path) -> np.ndarray:
 
 def test_a_graph_read_back_answers_as_it_did(graph: Path) -> None:
     with torch.no_grad():
-        again = trained_detector(graph, KINDS)(torch.from_numpy(PICTURES)).numpy()
+        again = load_detector(graph, KINDS)(torch.from_numpy(PICTURES)).numpy()
     np.testing.assert_allclose(again, rows_of(graph), atol=1e-4)
 
 
@@ -60,8 +60,8 @@ def test_half_of_what_was_learnt_is_kept(graph: Path, files: PictureFiles, tmp_p
 
     monkeypatch.setattr("diorama_core.training.adapting.export_detector", exported)
     for kept in (0.0, 0.5, 1.0):
-        adapted_detector(graph, [picture(1), picture(2)], files, KINDS, tmp_path / f"{kept}", replace(how, kept=kept))
-    before = dict(trained_detector(graph, KINDS).named_parameters())
+        adapt_detector(graph, [picture(1), picture(2)], files, KINDS, tmp_path / f"{kept}", replace(how, kept=kept))
+    before = dict(load_detector(graph, KINDS).named_parameters())
     name = "box.weight"
     assert torch.allclose(found[1.0][name], before[name], atol=1e-3)
     assert not torch.allclose(found[0.0][name], before[name], atol=1e-3)
@@ -80,7 +80,7 @@ def test_what_has_no_category_is_learnt_as_a_box_only(tmp_path: Path) -> None:
     cv2.imwrite(str(tmp_path / "room.png"), np.full((120, 160, 3), 128, np.uint8))
     things = [{"bbox": [10, 10, 60, 60], "class": w, "kind": k} for w, k in (("chair", "chair"), ("thing", "object"))]
     (tmp_path / "a.json").write_text(json.dumps({"room": {"size": [160, 120], "things": things}}))
-    labelled = labelled_photos(tmp_path / "a.json", tmp_path, ("bed", "chair"))["room"]
+    labelled = read_photos(tmp_path / "a.json", tmp_path, ("bed", "chair"))["room"]
     assert labelled.categories.tolist() == [1, 2]
     rows = torch.zeros(1, 1, 7)
     box = torch.tensor([[[0.0, 0.0, 16.0, 16.0]]])

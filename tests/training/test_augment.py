@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.training.augment import MIN_SIDE_PX, photographed, training_picture
+from diorama_core.training.augment import MIN_SIDE_PX, photograph, training_picture
 from diorama_core.training.pictures import LabelledPicture
 
 SIZE = (96, 64)
@@ -36,6 +36,6 @@ def test_boxes_stay_in_the_picture_and_on_the_object(seed: int, mosaic: bool) ->
 
 
 def test_the_same_seed_gives_the_same_picture() -> None:
-    first, again = (photographed(picture(0).rgb, np.random.default_rng(5)) for _ in range(2))
+    first, again = (photograph(picture(0).rgb, np.random.default_rng(5)) for _ in range(2))
     assert np.array_equal(first, again)
-    assert not np.array_equal(first, photographed(picture(0).rgb, np.random.default_rng(6)))
+    assert not np.array_equal(first, photograph(picture(0).rgb, np.random.default_rng(6)))

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.models.recogniser import STRIDES, places
-from diorama_core.training.networks import Detector, OutlineNetwork, assigned, decoded, detector_loss, outline_loss
+from diorama_core.training.networks import Detector, OutlineNetwork, assign, decode, detector_loss, outline_loss
 
 SIZE = (64, 96)
 
@@ -43,7 +43,7 @@ def test_every_place_has_one_row() -> None:
 )  # fmt: skip
 def test_a_box_is_answered_for_by_places_inside_it(x: float, y: float, w: float, h: float) -> None:
     box = np.array([[x, y, min(x + w, SIZE[0]), min(y + h, SIZE[1])]], np.float32)
-    owner = assigned(box, *SIZE)
+    owner = assign(box, *SIZE)
     centres, _ = places(*SIZE)
     inside = ((centres > box[0, :2]) & (centres < box[0, 2:])).all(axis=1)
     assert inside[owner == 0].all()
@@ -51,15 +51,15 @@ def test_a_box_is_answered_for_by_places_inside_it(x: float, y: float, w: float,
 
 def test_of_two_boxes_at_one_place_the_smaller_is_answered_for() -> None:
     boxes = np.array([[0, 0, 60, 60], [8, 8, 56, 56]], np.float32)
-    owner = assigned(boxes, *SIZE)
+    owner = assign(boxes, *SIZE)
     assert (owner == 1).any()
-    assert (assigned(boxes[:0], *SIZE) == -1).all()
+    assert (assign(boxes[:0], *SIZE) == -1).all()
 
 
 def test_a_perfect_answer_has_almost_no_loss_and_any_other_has_more() -> None:
     boxes = torch.tensor([[4.0, 4.0, 40.0, 44.0], [30.0, 50.0, 60.0, 90.0]])
     kinds = torch.tensor([2, 0])
-    owner = assigned(boxes.numpy(), *SIZE)
+    owner = assign(boxes.numpy(), *SIZE)
     rows = _rows_of(boxes, owner, kinds, 3)
     centres, strides = (torch.from_numpy(a) for a in places(*SIZE))
     wanted = boxes[torch.from_numpy(owner).clamp(min=0)][None]
@@ -74,7 +74,7 @@ def test_a_perfect_answer_has_almost_no_loss_and_any_other_has_more() -> None:
 
 def test_boxes_are_read_back_from_distances() -> None:
     centres, strides = (torch.from_numpy(a) for a in places(*SIZE))
-    boxes = decoded(torch.zeros(1, len(centres), 4), centres, strides)
+    boxes = decode(torch.zeros(1, len(centres), 4), centres, strides)
     np.testing.assert_allclose((boxes[0, :, 2:] - boxes[0, :, :2]).numpy(), 2 * strides.numpy()[:, None] * np.ones(2))
 
 

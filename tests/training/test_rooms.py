@@ -7,12 +7,12 @@ import torch
 
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.training.networks import Residual, convolution
-from diorama_core.training.rooms import varied_room
+from diorama_core.training.rooms import random_room
 
 
 def test_a_seed_gives_one_room_with_many_categories() -> None:
     library = built_in_library()
-    room, again = varied_room(3, library), varied_room(3, library)
+    room, again = random_room(3, library), random_room(3, library)
     assert [o.shape_id for o in room.objects] == [o.shape_id for o in again.objects]
     assert [o.colour for o in room.objects] == [o.colour for o in again.objects]
     assert len({o.category for o in room.objects}) >= 8

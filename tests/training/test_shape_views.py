@@ -22,7 +22,7 @@ def files(folder: Path, width: int = 30, height: int = 60) -> ShapeViewFiles:
     rgba[0, 10 : 10 + height, 20 : 20 + width] = 255
     rgba[0, 60:70, 55:70, 3] = 90
     views = ShapeViews(rgba, 2, np.array([1, -1, -1, 0, 3, -1, 1], np.int8))
-    (folder / "shape_0000000000000000.npz").write_bytes(shape_views._packed(views))
+    (folder / "shape_0000000000000000.npz").write_bytes(shape_views._pack(views))
     return ShapeViewFiles.of(folder)
 
 

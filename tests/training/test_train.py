@@ -28,7 +28,7 @@ from diorama_core.training.train import (
     namer_trainer,
     outliner_trainer,
 )
-from diorama_core.training.windows import WindowFiles, Windows, _packed
+from diorama_core.training.windows import WindowFiles, Windows, _pack
 from tests.training.test_augment import picture
 
 KINDS = 5
@@ -39,7 +39,7 @@ SMALL = (96, 64)
 @pytest.fixture
 def files(tmp_path: Path) -> PictureFiles:
     for room in range(3):
-        packed = pictures._packed(tuple(picture(10 * room + k) for k in range(2)))
+        packed = pictures._pack(tuple(picture(10 * room + k) for k in range(2)))
         (tmp_path / f"room_{room:06d}.npz").write_bytes(packed)
     return PictureFiles.of(tmp_path)
 
@@ -50,7 +50,7 @@ def shape_files(folder: Path) -> ShapeViewFiles:
         rgba = rng.integers(0, 255, (2, 40, 40, 4)).astype(np.uint8)
         rgba[:, 8:32, 12:28, 3] = 255
         views = ShapeViews(rgba, kind, np.array([0, kind, -1, 0, 2, 1, -1], np.int8))
-        (folder / f"shape_{kind:016d}.npz").write_bytes(shape_views._packed(views))
+        (folder / f"shape_{kind:016d}.npz").write_bytes(shape_views._pack(views))
     return ShapeViewFiles.of(folder)
 
 
@@ -58,7 +58,7 @@ def window_files(folder: Path) -> WindowFiles:
     rng = np.random.default_rng(4)
     rgb = rng.integers(0, 255, (3, SIDE, SIDE, 3)).astype(np.uint8)
     share = (rgb[..., 0] > 127).astype(np.uint8) * 255
-    (folder / "windows_000001.npz").write_bytes(_packed(Windows(rgb, share, np.ones(share.shape, bool))))
+    (folder / "windows_000001.npz").write_bytes(_pack(Windows(rgb, share, np.ones(share.shape, bool))))
     return WindowFiles.of(folder)
 
 

@@ -42,7 +42,7 @@ def read_array(path: Path) -> np.ndarray:
     try:
         return array_of(content)
     except Exception as error:  # a damaged header raises almost anything
-        reason = bounded.shortened(str(error)) or type(error).__name__
+        reason = bounded.shorten(str(error)) or type(error).__name__
         raise InputError(f"{path}: not an array ({reason}); download it again") from error
 
 

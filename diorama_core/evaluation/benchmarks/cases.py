@@ -10,7 +10,7 @@ from typing import TypeVar
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.types import Camera, Scene
-from diorama_core.synthesis import ROOM_KINDS, RoomKind, TruthView, furnished_room, sample_cameras
+from diorama_core.synthesis import ROOM_KINDS, RoomKind, TruthView, furnish_room, sample_cameras
 from diorama_core.synthesis.truth import Studio
 
 log = logging.getLogger(__name__)
@@ -52,7 +52,7 @@ def recipe(scenes: int = STANDARD_SCENES, views: int = VIEWS, seed: int = 0) -> 
 
 def furnish(case: Case, library: ShapeLibrary) -> Scene:
     """The room of a case, in the finishes and styles reserved for tests."""
-    return furnished_room(case.seed, case.kind, library, split="test")
+    return furnish_room(case.seed, case.kind, library, split="test")
 
 
 def studio_of(case: Case, library: ShapeLibrary, size: tuple[int, int] = SIZE) -> tuple[Studio, tuple[Camera, ...]]:

@@ -38,7 +38,7 @@ from diorama_core.library.taxonomy import with_kin
 from diorama_core.pipeline.run import build_scene
 from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Scene, SceneObject
-from diorama_core.synthesis.truth import moved
+from diorama_core.synthesis.truth import transform
 
 log = logging.getLogger(__name__)
 
@@ -214,7 +214,7 @@ def _relation(case: LocalCase, scene: Scene, by_mask: dict[int, SceneObject]) ->
 def alignments(models: Sequence[AlignedModel], scene: Scene, frame: ScanFrame) -> tuple[tuple[str, bool], ...]:
     """For every model whether some object of its category is within 20 cm, 20 degrees and 20 %; each is used once."""
     if scene.camera is not None:
-        scene = moved(scene, frame.camera.T_world_camera @ scene.camera.T_camera_world)
+        scene = transform(scene, frame.camera.T_world_camera @ scene.camera.T_camera_world)
     left = list(scene.objects)
     rows = []
     for model in models:

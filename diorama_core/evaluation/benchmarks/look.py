@@ -36,7 +36,7 @@ from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.geometry.window import Window
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.stretch import relative_scale, stretched_parts
+from diorama_core.library.stretch import relative_scale, stretch_parts
 from diorama_core.pose import MadeToMeasure, RenderAndCompare
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.picture import instances_seen, picture
@@ -233,7 +233,7 @@ def _measure(
 
 def _standing(item: SceneObject, library: ShapeLibrary) -> trimesh.Trimesh:
     """The shape in the size at which it stands, stretched by structure as it is shown."""
-    parts = stretched_parts(library.parts(item.shape_id), relative_scale(item.pose.scale))
+    parts = stretch_parts(library.parts(item.shape_id), relative_scale(item.pose.scale))
     whole = parts.to_geometry()
     return trimesh.Trimesh(np.asarray(whole.vertices) * item.pose.scale, whole.faces, process=False)
 

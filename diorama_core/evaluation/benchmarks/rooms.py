@@ -14,7 +14,7 @@ from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import SILENT, Progress
 from diorama_core.synthesis.splits import split_library
-from diorama_core.synthesis.survey import RoomSurvey, ViewSurvey, counted, survey_room, survey_view
+from diorama_core.synthesis.survey import RoomSurvey, ViewSurvey, count, survey_room, survey_view
 
 THUMBNAIL = (240, 180)
 SHEET_COLUMNS = 9
@@ -91,7 +91,7 @@ def rooms_table(rooms: Sequence[RoomSurvey]) -> Table:
         (
             len(rooms),
             f"{min(objects)} to {max(objects)}, mean {np.mean(objects):.0f}" if objects else "",
-            counted([r.depth for r in rooms]),
+            count([r.depth for r in rooms]),
             ", ".join(f"{o}: {n}" for o, n in _tally([r.outline for r in rooms])),
             sum(len(r.collisions) for r in rooms),
             sum(len(r.outside) for r in rooms),
@@ -113,7 +113,7 @@ def views_table(views: Sequence[ViewSurvey]) -> Table:
             _spread([float(v.asked) for v in views], "{:.0f}"),
             _spread([v.floor for v in views], "{:.0%}"),
             _spread([v.largest for v in views], "{:.0%}"),
-            counted([v.walls for v in views]),
+            count([v.walls for v in views]),
             sum(bool(v.faults(MIN_ASKED)) for v in views),
         ),
     )

@@ -27,7 +27,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Scene, SceneObject, yaw_rotation
-from diorama_core.synthesis.scan import scanned, write_scan
+from diorama_core.synthesis.scan import scan, write_scan
 from diorama_core.synthesis.splits import split_library
 
 MIN_SHARED = 0.3
@@ -121,7 +121,7 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
         progress.report(cases.index(case) / len(cases), f"scanning {case.name}")
         truth = furnish(case, tested)
         with tempfile.TemporaryDirectory() as folder:
-            write_scan(Path(folder), scanned(truth, tested, case.seed))
+            write_scan(Path(folder), scan(truth, tested, case.seed))
             return open_all_ways(case.name, truth, Path(folder), searched)
 
     for _, result in attempt(cases, results_of, left_out):

@@ -35,7 +35,7 @@ from diorama_core.synthesis import sample_cameras
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.sphere import sphere_photo, sphere_place
 from diorama_core.synthesis.splits import split_library
-from diorama_core.synthesis.truth import Studio, TruthView, moved
+from diorama_core.synthesis.truth import Studio, TruthView, transform
 
 log = logging.getLogger(__name__)
 
@@ -234,7 +234,7 @@ class _Room:
         T = seen.T_world_sphere.copy()
         T[:3, :3] = T[:3, :3] @ built.R_room_sphere.T
         T[:3, 3] -= T[:3, 2] * built.views[0].camera.position[2]
-        scene = moved(built.room.scene, T)
+        scene = transform(built.room.scene, T)
         known = {thing.labelled.box: name for thing, name in built.things}
         named = {known[b.box]: first.truth.scene.objects[k].box_px for k, b in marked.items() if b.box in known}
         objects = tuple(replace(o, box_px=named.get(o.id)) for o in scene.objects)

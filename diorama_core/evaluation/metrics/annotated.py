@@ -13,7 +13,7 @@ from diorama_core.evaluation.adapters.photo_annotations import AnnotatedObject
 from diorama_core.evaluation.metrics.colour import perceived_difference
 from diorama_core.geometry.projection import box_iou, visible_bounds
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
-from diorama_core.library.form import compared, form_at
+from diorama_core.library.form import compare, form_at
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.scene.types import Camera, Scene, SceneObject
 
@@ -126,7 +126,7 @@ def measure(
         shape=shape.id,
         kind_first=shape.category == annotated.kind if annotated.nameable else None,
         kind_among=annotated.kind in among if annotated.nameable else None,
-        form=compared(annotated.attributes, design),
+        form=compare(annotated.attributes, design),
         has_colour=None if annotated.colour is None else item.colour is not None,
         colour_difference=_colour_difference(annotated, shown),
         front_error_deg=front_error_of(annotated, item, scene.camera, shape.symmetry),

@@ -26,7 +26,7 @@ from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Camera, Intrinsics, Scene, SceneObject
 from diorama_core.synthesis.artefacts import true_supports
-from diorama_core.synthesis.truth import TruthView, moved
+from diorama_core.synthesis.truth import TruthView, transform
 
 SAME_BOX = 0.5
 """Boxes that overlap less than this are of different objects."""
@@ -180,7 +180,7 @@ def align_to_truth(scene: Scene, view: TruthView) -> Scene:
     """A prediction moved so that its camera is the true one."""
     if scene.camera is None:
         return scene
-    return moved(scene, view.camera.T_world_camera @ scene.camera.T_camera_world)
+    return transform(scene, view.camera.T_world_camera @ scene.camera.T_camera_world)
 
 
 def match_all(truth: list[SceneObject], scene: Scene) -> list[SceneObject | None]:

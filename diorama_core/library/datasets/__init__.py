@@ -10,7 +10,7 @@ from diorama_core.library.datasets.published import (
     DatasetEntry,
     as_sources,
     dataset_named,
-    recognised,
+    recognise,
 )
 
-__all__ = ["DATASETS", "Dataset", "DatasetEntry", "as_sources", "dataset_named", "recognised"]
+__all__ = ["DATASETS", "Dataset", "DatasetEntry", "as_sources", "dataset_named", "recognise"]

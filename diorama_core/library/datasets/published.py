@@ -56,12 +56,12 @@ def as_sources(dataset: Dataset, folder: Path, given: Given) -> tuple[ModelSourc
     entries = list(dataset.entries(folder))
     if not entries:
         raise InputError(f"{folder}: no model of {dataset.name} lies there; name the folder that it was unpacked to")
-    known = {e.path.relative_to(folder).as_posix(): given.override(_named(e, dataset)) for e in entries}
+    known = {e.path.relative_to(folder).as_posix(): given.override(_categorise(e, dataset)) for e in entries}
     ids = {e.path: e.id for e in entries}
     return sources(folder, [e.path for e in entries], Given(), known, ids)
 
 
-def _named(entry: DatasetEntry, dataset: Dataset) -> Given:
+def _categorise(entry: DatasetEntry, dataset: Dataset) -> Given:
     """What the set says, with the category that its words mean; its own words become synonyms."""
     category = next((c for w in entry.words for c in [taxonomy.resolve(w)] if w and c.exact), None)
     name = category.category.name if category is not None else taxonomy.UNKNOWN.name
@@ -91,12 +91,12 @@ def read_text(path: Path) -> str:
     """A text file, gzipped or not; raises `InputError` when it cannot be read."""
     data = read_bytes(path, MAX_METADATA_BYTES, InputError, _ADVICE)
     try:
-        return (_unzipped(data) if path.suffix == ".gz" else data).decode("utf-8-sig")
+        return (_unzip(data) if path.suffix == ".gz" else data).decode("utf-8-sig")
     except (OSError, EOFError, ValueError, zlib.error) as error:
         raise InputError(f"{path} cannot be read ({error}); {_ADVICE}") from error
 
 
-def _unzipped(data: bytes) -> bytes:
+def _unzip(data: bytes) -> bytes:
     """The content of a gzip file, of at most `MAX_METADATA_BYTES`."""
     with gzip.GzipFile(fileobj=io.BytesIO(data)) as stream:
         content = stream.read(MAX_METADATA_BYTES + 1)
@@ -272,6 +272,6 @@ def dataset_named(name: str) -> Dataset:
     return dataset
 
 
-def recognised(folder: Path) -> Dataset | None:
+def recognise(folder: Path) -> Dataset | None:
     """The data set whose layout a folder has; None for a folder of anyone's models."""
     return next((d for d in DATASETS if first(folder, *d.marks) is not None), None)

@@ -17,7 +17,7 @@ from diorama_core.errors import DioramaError, LibraryError
 from diorama_core.library.ingest.finding import Trouble
 from diorama_core.library.ingest.frames import Convention
 from diorama_core.library.ingest.guess import MAX_METRES, MIN_METRES
-from diorama_core.library.ingest.joint import Evidence, asked_of, groups_of, joint_convention
+from diorama_core.library.ingest.joint import Evidence, groups_of, joint_convention, sample_files
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
 from diorama_core.library.ingest.shaping import ModelSource, Painter, confidence, evidence_of, ingest_file
@@ -121,9 +121,9 @@ def with_conventions(
         groups.setdefault(group, []).append(path)
     new = {s.path for s in waiting}
     groups = {g: paths for g, paths in groups.items() if len(paths) > 1 and new.intersection(paths)}
-    asked = [plain[path] for paths in groups.values() for path in asked_of(paths)]
+    asked = [plain[path] for paths in groups.values() for path in sample_files(paths)]
     evidence_of_files: dict[Path, tuple[Evidence, Convention, float]] = {}
-    for piece in workers.map(partial(_asked, limits=limits), asked):
+    for piece in workers.map(partial(_evidence, limits=limits), asked):
         progress.check()
         if piece.error is None and piece.value is not None:
             evidence_of_files[piece.item.path] = piece.value
@@ -137,10 +137,10 @@ def with_conventions(
     return [replace(s, convention=known.get(s.path)) for s in waiting]
 
 
-def _asked(source: ModelSource, limits: Limits) -> tuple[Evidence, Convention, float]:
-    _bound_memory(limits.memory_bytes)
+def _evidence(source: ModelSource, limits: Limits) -> tuple[Evidence, Convention, float]:
+    _limit_memory(limits.memory_bytes)
     with _time_limit(limits.seconds):
-        return evidence_of(source, _known(), limits)
+        return evidence_of(source, _cached_shapes(), limits)
 
 
 def _learn(progress: Progress) -> float:
@@ -158,18 +158,18 @@ def _learn(progress: Progress) -> float:
 
 def _work(source: ModelSource, painter: Painter | None, limits: Limits) -> Ingested:
     """One piece of work, in a process of its own kind: bounded in memory and time."""
-    _bound_memory(limits.memory_bytes)
+    _limit_memory(limits.memory_bytes)
     with _time_limit(limits.seconds):
-        return ingest_file(source, _known(), painter, limits)
+        return ingest_file(source, _cached_shapes(), painter, limits)
 
 
 @cache
-def _known() -> KnownShapes:
+def _cached_shapes() -> KnownShapes:
     return known_shapes()
 
 
 @cache
-def _bound_memory(most: int) -> None:
+def _limit_memory(most: int) -> None:
     """Let this process take no more than `most` of address space besides what it has, where the system can do that.
 
     What it has may be much: Ray's workers map the memory that they share.

@@ -12,13 +12,13 @@ from diorama_core.library import taxonomy
 from diorama_core.library.ingest.given import Given, axis_name, axis_vector
 from diorama_core.library.ingest.relief import relief, symmetry_fold
 from diorama_core.library.ingest.repair import Repaired
-from diorama_core.library.ingest.shaping import packed_shape
+from diorama_core.library.ingest.shaping import pack_shape
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.part_notes import transform
 from diorama_core.library.record import Assumption, Guess, Shape, ShapeLibrary, usual_contact_faces
 
 
-def corrected(
+def correct(
     library: ShapeLibrary,
     shape_id: str,
     *,
@@ -50,7 +50,7 @@ def corrected(
     shape = library.shape(shape_id)
     T = np.eye(4)
     T[:3, :3] = R_to_from * scale
-    meshes = _turned_parts(library.parts(shape_id), T)
+    meshes = _turn_parts(library.parts(shape_id), T)
     whole = Repaired(tuple(meshes), ()).whole
     name = shape.category if category is None else taxonomy.resolve(category).category.name
     record = replace(
@@ -58,9 +58,9 @@ def corrected(
         category=name,
         symmetry=symmetry_fold(whole, relief(whole)),
         contact_faces=usual_contact_faces(taxonomy.category(name).mount),
-        guess=_agreed(shape, R_to_from, scale, name),
+        guess=_guess(shape, R_to_from, scale, name),
     )
-    return packed_shape(record, meshes, None, source_key, ())
+    return pack_shape(record, meshes, None, source_key, ())
 
 
 def _turn(up: str, front: str | None) -> np.ndarray:
@@ -75,7 +75,7 @@ def _turn(up: str, front: str | None) -> np.ndarray:
     return np.stack([x, np.cross(z, x), z])
 
 
-def _turned_parts(parts: trimesh.Scene, T: np.ndarray) -> list[trimesh.Trimesh]:
+def _turn_parts(parts: trimesh.Scene, T: np.ndarray) -> list[trimesh.Trimesh]:
     meshes = []
     for node in sorted(parts.graph.nodes_geometry):
         T_shape_part, name = parts.graph[node]
@@ -89,7 +89,7 @@ def _turned_parts(parts: trimesh.Scene, T: np.ndarray) -> list[trimesh.Trimesh]:
     return [transform(mesh, T_centred) for mesh in meshes]
 
 
-def _agreed(shape: Shape, R_to_from: np.ndarray, scale: float, category: str) -> Guess | None:
+def _guess(shape: Shape, R_to_from: np.ndarray, scale: float, category: str) -> Guess | None:
     """What was guessed, as corrected; in terms of the file's axes."""
     if shape.guess is None:
         return None

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import read_bytes, shortened
+from diorama_core.io.bounded import read_bytes, shorten
 from diorama_core.io.file_heads import OtherFile, head_of, what_else
 from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.models import SUFFIXES, form_of
@@ -167,7 +167,7 @@ def _row(path: Path, line: int, row: Mapping[str, str | None]) -> Given:
             reason=f"{path.name}",
         )
     except (InputError, ValueError) as error:
-        raise InputError(f"{path}, line {line}: {shortened(str(error))}") from error
+        raise InputError(f"{path}, line {line}: {shorten(str(error))}") from error
 
 
 def slug(text: str) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Int
 
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.library import taxonomy
 
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
@@ -42,7 +42,7 @@ class Given:
         if self.unit_m is not None and not 1e-9 < self.unit_m < 1e9:
             raise InputError(f"unit {self.unit_m}: give the metres in one unit of the file, such as 0.01")
         if self.category is not None and not taxonomy.resolve(self.category).exact:
-            name = shortened(self.category, 60)
+            name = shorten(self.category, 60)
             raise InputError(f"category {name!r} is not known; {taxonomy.resolve(name).note}")
 
     def override(self, other: Given) -> Given:

@@ -15,8 +15,8 @@ import numpy as np
 from PIL import Image
 
 from diorama_core.errors import LibraryError
-from diorama_core.io.bounded import parse_json, shortened
-from diorama_core.io.contained import shown
+from diorama_core.io.bounded import parse_json, shorten
+from diorama_core.io.contained import quote
 from diorama_core.io.glb import GlbError, is_glb, split_glb, write_glb
 from diorama_core.library.ingest.frames import OwnFrame, own_frame
 from diorama_core.library.ingest.gltf_compressed import is_fallback, meshopt_view, undo_draco
@@ -32,7 +32,7 @@ METAL_SPECULAR, METAL_DIFFUSE = 0.5, 0.2
 """A dark material that reflects so much is metal."""
 
 
-def packed(data: bytes, references: References, limits: Limits) -> bytes:
+def pack_glb(data: bytes, references: References, limits: Limits) -> bytes:
     """A GLB with the same content, every reference inside it and every number checked.
 
     Args:
@@ -52,9 +52,9 @@ def packed(data: bytes, references: References, limits: Limits) -> bytes:
         for accessor in _rows(document, "accessors"):
             _check_accessor(accessor, document, views, limits)
         _check_nodes(document, limits)
-        return _repacked(document, views, references)
+        return _repack(document, views, references)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, RecursionError) as error:
-        raise LibraryError(f"malformed glTF ({type(error).__name__}: {shortened(str(error))})") from error
+        raise LibraryError(f"malformed glTF ({type(error).__name__}: {shorten(str(error))})") from error
 
 
 def node_names(glb: bytes) -> tuple[str, ...]:
@@ -104,7 +104,7 @@ def _rows(document: Json, name: str) -> list[Json]:
 def _check_asset(document: Json) -> None:
     version = str(document.get("asset", {}).get("version", ""))
     if not version.startswith("2"):
-        raise LibraryError(f"glTF version {shown(version)} is not supported; save it as glTF 2.0")
+        raise LibraryError(f"glTF version {quote(version)} is not supported; save it as glTF 2.0")
 
 
 def _buffer(row: Json, number: int, binary: bytes | None, references: References) -> bytes:
@@ -198,7 +198,7 @@ def _triangles(mesh: Json, document: Json) -> int:
     return total
 
 
-def _repacked(document: Json, views: list[bytes], references: References) -> bytes:
+def _repack(document: Json, views: list[bytes], references: References) -> bytes:
     """The document with one buffer, floats instead of scaled integers, and pictures that can be unpacked."""
     views = list(views)
     rows = [dict(row) for row in document.get("bufferViews", [])]
@@ -307,11 +307,11 @@ def place_textures(document: Json, rows: list[Json], views: list[bytes]) -> None
                 continue
             key = (source, repr(sorted(transform.items())))
             if key not in made:
-                made[key] = _placed(document, rows, views, source, transform)
+                made[key] = _place(document, rows, views, source, transform)
             primitive["attributes"] = {**primitive["attributes"], "TEXCOORD_0": made[key]}
 
 
-def _placed(document: Json, rows: list[Json], views: list[bytes], source: int, transform: Json) -> int:
+def _place(document: Json, rows: list[Json], views: list[bytes], source: int, transform: Json) -> int:
     """A new accessor with the coordinates of another one, transformed."""
     accessor = document["accessors"][source]
     if accessor["componentType"] != 5126 or "bufferView" not in accessor:

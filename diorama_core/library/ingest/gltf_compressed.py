@@ -42,7 +42,7 @@ def meshopt_view(row: Json, buffers: list[bytes], limits: Limits) -> bytes | Non
     try:
         if mode == "ATTRIBUTES":
             rows = meshoptimizer.decode_vertex_buffer(count, stride, data, np.dtype(f"V{stride}"))
-            return _filtered(rows.view(np.uint8).reshape(count, stride), packed.get("filter"))
+            return _unfilter(rows.view(np.uint8).reshape(count, stride), packed.get("filter"))
         decode = meshoptimizer.decode_index_buffer if mode == "TRIANGLES" else meshoptimizer.decode_index_sequence
         indices = np.asarray(decode(count, 4, data)).reshape(-1).astype("<u4")
         return indices.astype("<u2").tobytes() if stride == 2 else indices.tobytes()
@@ -52,7 +52,7 @@ def meshopt_view(row: Json, buffers: list[bytes], limits: Limits) -> bytes | Non
         ) from error
 
 
-def _filtered(rows: np.ndarray, name: str | None) -> bytes:
+def _unfilter(rows: np.ndarray, name: str | None) -> bytes:
     """Rows with the extension's filter undone (https://github.com/KhronosGroup/glTF, EXT_meshopt_compression)."""
     if name in (None, "NONE"):
         return rows.tobytes()

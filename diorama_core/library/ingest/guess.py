@@ -22,7 +22,7 @@ from diorama_core.library.ingest.frames import Convention
 from diorama_core.library.ingest.given import AXES, UNITS, Given, axis_name
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
 from diorama_core.library.ingest.names import NameEvidence
-from diorama_core.library.ingest.relief import Relief, quarter_turns, turned
+from diorama_core.library.ingest.relief import Relief, quarter_turns, turn
 from diorama_core.library.kinds import is_possible
 from diorama_core.library.labels import meanings
 from diorama_core.library.record import Assumption, Guess
@@ -86,7 +86,7 @@ def guess_frame(
     """
     units = _unit_prior(convention, given, float(mesh.extents.max()))
     table, log_extents = _table(mesh, pictures, convention, named, known, given, units)
-    return _chosen(table, quarter_turns(), list(units), log_extents, convention, given, named)
+    return _choose(table, quarter_turns(), list(units), log_extents, convention, given, named)
 
 
 def frame_evidence(
@@ -126,9 +126,9 @@ def _table(
     turns = quarter_turns()
     ups = [axis_name(R[2]) for R in turns]
     fronts = [axis_name(R[0]) for R in turns]
-    features = np.stack([relief_features(turned(pictures, R)) for R in turns])
+    features = np.stack([relief_features(turn(pictures, R)) for R in turns])
     log_extents = np.log(np.maximum(mesh.extents, 1e-9))[np.abs(turns).argmax(axis=2)]
-    frame = _frame_prior(ups, fronts, convention, given) - MIRRORED * _lopsided(pictures, turns)
+    frame = _frame_prior(ups, fronts, convention, given) - MIRRORED * _asymmetry(pictures, turns)
     table: dict[str, np.ndarray] = {}
     sizes = [log_extents + np.log(unit) for unit in units]
     allowed = np.concatenate([size[np.isfinite(frame)] for size in sizes])
@@ -155,7 +155,7 @@ def _possible(name: str, log_sizes: Float[np.ndarray, "n 3"], *, is_given: bool)
     return np.array([possible[size[2]] for size in log_sizes])
 
 
-def _chosen(
+def _choose(
     scores: Mapping[str, Float[np.ndarray, "24 u"]],
     turns: Int[np.ndarray, "24 3 3"],
     units: list[float],
@@ -180,12 +180,12 @@ def _chosen(
     size_says = "its size" if u < len(units) else f"no usual unit fits: scaled to the usual size of a {categories[c]}"
     strange = named.weights is not None and not named.weights and categories[c] != taxonomy.UNKNOWN.name
     guess = Guess(
-        up=_assumed(up, posterior[:, same_up].sum(), promised, given.up, given),
-        front=_assumed(
+        up=_assume(up, posterior[:, same_up].sum(), promised, given.up, given),
+        front=_assume(
             front, posterior[:, q].sum() / max(posterior[:, same_up].sum(), 1e-300), "its shape", given.front, given
         ),
-        unit=_assumed(f"{unit:.6g}", posterior[..., u].sum(), promised if usual else size_says, given.unit_m, given),
-        category=_assumed(
+        unit=_assume(f"{unit:.6g}", posterior[..., u].sum(), promised if usual else size_says, given.unit_m, given),
+        category=_assume(
             categories[c],
             min(posterior[c].sum(), OTHER_WORD if strange else named.certainty),
             "its name" if named.weights else "its looks",
@@ -196,7 +196,7 @@ def _chosen(
     return Frame(turns[q], unit, categories[c], guess)
 
 
-def _assumed(value: str, confidence: float, reason: str, stated: object, given: Given) -> Assumption:
+def _assume(value: str, confidence: float, reason: str, stated: object, given: Given) -> Assumption:
     if stated is not None:
         return Assumption(value, 1.0, given.reason)
     return Assumption(value, round(float(min(confidence, 0.99)), 3), reason)
@@ -270,10 +270,10 @@ def _unlike(
     return np.sort(difference, axis=1)[:, :ALIKE].mean(axis=1)
 
 
-def _lopsided(pictures: Relief, turns: Int[np.ndarray, "24 3 3"]) -> Float[np.ndarray, "24"]:
+def _asymmetry(pictures: Relief, turns: Int[np.ndarray, "24 3 3"]) -> Float[np.ndarray, "24"]:
     """How much left and right differ in each orientation."""
     mirrors = [np.diag([-1 if k == axis else 1 for k in range(3)]) for axis in range(3)]
-    along = np.array([np.abs(relief_features(pictures) - relief_features(turned(pictures, m))).mean() for m in mirrors])
+    along = np.array([np.abs(relief_features(pictures) - relief_features(turn(pictures, m))).mean() for m in mirrors])
     return along[np.abs(turns[:, 1]).argmax(axis=1)]
 
 

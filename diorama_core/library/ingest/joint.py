@@ -67,7 +67,7 @@ def exporter_of(path: Path) -> str:
     return re.sub(r"[\d.:/-]+", "", match[1]).strip().lower()[:60] if match else ""
 
 
-def asked_of(paths: Sequence[Path]) -> list[Path]:
+def sample_files(paths: Sequence[Path]) -> list[Path]:
     """Files that speak for their group."""
     rows = np.unique(np.linspace(0, len(paths) - 1, min(len(paths), ASKED)).round().astype(int))
     return [paths[k] for k in rows]
@@ -98,11 +98,11 @@ def joint_convention(promised: Convention, evidence: Sequence[Evidence]) -> Conv
         promised,
         name=FOLDERS if promised.promises and broken else promised.name,
         promises=promised.promises and not broken,
-        up=_loosened(up, EXCEPTION),
-        front=_loosened({axis: float(front.get(axis, 0.0)) for axis in up}, TURNED),
+        up=_loosen(up, EXCEPTION),
+        front=_loosen({axis: float(front.get(axis, 0.0)) for axis in up}, TURNED),
         unit={u: (1 - EXCEPTION) * float(p) + EXCEPTION / len(unit) for u, p in unit.items()},
     )
 
 
-def _loosened(shares: Mapping[str, float], exception: float) -> dict[str, float]:
+def _loosen(shares: Mapping[str, float], exception: float) -> dict[str, float]:
     return {axis: (1 - exception) * share + exception / len(shares) for axis, share in shares.items()}

@@ -60,7 +60,7 @@ def known_shapes(
     reliefs_by_key = _read(path)
     missing = [s for s in shapes if _key(s) not in reliefs_by_key]
     if missing:
-        reliefs_by_key |= _taken(library, missing, on_step)
+        reliefs_by_key |= _take(library, missing, on_step)
         reliefs_by_key = {_key(s): reliefs_by_key[_key(s)] for s in shapes}
         _write(path, reliefs_by_key)
     reliefs = np.stack([reliefs_by_key[_key(s)] for s in shapes])
@@ -89,7 +89,7 @@ def _spread(shapes: Sequence[Shape]) -> list[Shape]:
     return [kind[row] for kind, some in zip(kinds.values(), rows, strict=True) for row in some]
 
 
-def _taken(
+def _take(
     library: ShapeLibrary, shapes: Sequence[Shape], on_step: Callable[[float], None]
 ) -> dict[str, UInt8[np.ndarray, "3 2 side side"]]:
     reliefs = {}

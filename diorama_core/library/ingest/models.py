@@ -15,7 +15,7 @@ from typing import Any
 import trimesh
 
 from diorama_core.errors import DioramaError, LibraryError, UnavailableError
-from diorama_core.io.contained import unpacked
+from diorama_core.io.contained import unpack
 from diorama_core.io.file_heads import FileHead, head_of, what_else
 from diorama_core.io.text import parse_xml
 from diorama_core.library.ingest import fbx, gltf
@@ -76,7 +76,7 @@ def read_model(path: Path, root: Path, limits: Limits = DEFAULT_LIMITS, member: 
         UnavailableError: its format needs an optional library.
     """
     if member:
-        with unpacked(path, limits.file_bytes) as folder:
+        with unpack(path, limits.file_bytes) as folder:
             return read_model(folder / member, folder, limits)
     head = head_of(path)
     form = form_of(head)
@@ -96,7 +96,7 @@ def read_model(path: Path, root: Path, limits: Limits = DEFAULT_LIMITS, member: 
 
 
 def _read_gltf(path: Path, references: References, limits: Limits) -> RawModel:
-    glb = gltf.packed(_content(path, limits), references, limits)
+    glb = gltf.pack_glb(_content(path, limits), references, limits)
     scene = trimesh.load_scene(io.BytesIO(glb), file_type="glb")
     names, frame = gltf.node_names(glb), gltf.frame_of_own(glb)
     return RawModel(scene, names, GLTF, tuple(references.warnings), frame)
@@ -107,7 +107,7 @@ def _read_obj(path: Path, references: References, limits: Limits) -> RawModel:
     options: dict[str, Any] = {"split_object": False, "group_material": True}
     resolver = GuardedResolver(references)
     scene = trimesh.load_scene(io.BytesIO(content), file_type="obj", resolver=resolver, **options)
-    return RawModel(scene, _written_names(content), OBJ, tuple(references.warnings))
+    return RawModel(scene, _obj_names(content), OBJ, tuple(references.warnings))
 
 
 def _read_plain(convention: Convention, kind: str) -> Callable[[Path, References, Limits], RawModel]:
@@ -154,9 +154,9 @@ def _read_3ds(path: Path, references: References, limits: Limits) -> RawModel:
 
 def _read_usd(path: Path, references: References, limits: Limits) -> RawModel:
     from diorama_core.library.ingest.usd_meshes import usd_scene
-    from diorama_core.library.ingest.usd_stage import frame_of, opened_stage, usd_errors
+    from diorama_core.library.ingest.usd_stage import frame_of, open_stage, usd_errors
 
-    stage = opened_stage(path)
+    stage = open_stage(path)
     with usd_errors(path):
         up, unit_m = frame_of(stage)
         scene = usd_scene(stage)
@@ -165,7 +165,7 @@ def _read_usd(path: Path, references: References, limits: Limits) -> RawModel:
     return RawModel(scene, tuple(dict.fromkeys(names)), convention, ())
 
 
-def _written_names(obj: bytes) -> tuple[str, ...]:
+def _obj_names(obj: bytes) -> tuple[str, ...]:
     """Names of objects, groups and materials of an OBJ, each once, in its order."""
     names = re.findall(rb"^(?:o|g|usemtl)[ \t]+([^\r\n]+)", obj, re.MULTILINE)
     return tuple(dict.fromkeys(name.decode(errors="replace").strip() for name in names))

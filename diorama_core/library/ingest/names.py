@@ -161,7 +161,7 @@ class NameEvidence:
     """How sure a kind can be by them."""
 
 
-def named_categories(stem: str, folders: Iterable[str] = (), parts: Iterable[str] = ()) -> NameEvidence:
+def name_evidence(stem: str, folders: Iterable[str] = (), parts: Iterable[str] = ()) -> NameEvidence:
     """Categories that names speak of.
 
     The file's own name is asked first; then the folders from the innermost outwards; then the names of its parts.
@@ -181,7 +181,7 @@ def named_categories(stem: str, folders: Iterable[str] = (), parts: Iterable[str
     return NameEvidence({} if words_of(stem) else None)
 
 
-def named_kind(name: str) -> str | None:
+def kind_in(name: str) -> str | None:
     """The one kind that a name speaks of, read as a file's name is; None where it says nothing."""
     words = words_of(name)
     kinds = _spoken_of(words) or _label_of(words)
@@ -201,7 +201,7 @@ def _spoken_of(words: tuple[str, ...]) -> dict[str, float]:
     words = words[:8]
     if NOTHING.intersection(words):
         return {UNKNOWN.name: MANY_WORDS}
-    known = {p: _known()[p] for p in _phrases(words) if p in _known()}
+    known = {p: _table()[p] for p in _phrases(words) if p in _table()}
     used = {word for phrase in known if " " in phrase for word in phrase.split()}
     kinds: dict[str, float] = {}
     for phrase, category in known.items():
@@ -234,7 +234,7 @@ def _singulars(phrase: str) -> Iterator[str]:
 
 
 @cache
-def _known() -> dict[str, str]:
+def _table() -> dict[str, str]:
     table = {_plain(c.name): c.name for c in CATEGORIES if c is not UNKNOWN}
     for category in CATEGORIES:
         if category is not UNKNOWN:

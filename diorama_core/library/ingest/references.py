@@ -15,7 +15,7 @@ from PIL import Image
 
 from diorama_core.errors import LibraryError
 from diorama_core.io import bounded
-from diorama_core.io.contained import ContainedFiles, shown
+from diorama_core.io.contained import ContainedFiles, quote
 from diorama_core.library.ingest.limits import Limits
 from diorama_core.library.ingest.obj import plain_mtl
 
@@ -65,7 +65,7 @@ class References:
         """The picture when it can be unpacked safely, else None with a warning."""
         problem = image_problem(data, self.limits)
         if problem:
-            self.warn(f"texture left out: {shown(name)} {problem}")
+            self.warn(f"texture left out: {quote(name)} {problem}")
             return None
         return data
 

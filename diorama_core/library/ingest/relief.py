@@ -48,7 +48,7 @@ def _rays() -> Float32[np.ndarray, "r 6"]:
     return rays.reshape(-1, 6)
 
 
-def turned(pictures: Relief, R_to_from: Int[np.ndarray, "3 3"]) -> Relief:
+def turn(pictures: Relief, R_to_from: Int[np.ndarray, "3 3"]) -> Relief:
     """The relief of the same shape after a turn by quarter turns (a signed permutation matrix)."""
     source = np.abs(R_to_from).argmax(axis=1)
     sign = R_to_from[np.arange(3), source]
@@ -85,12 +85,12 @@ _QUARTER = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
 
 def symmetry_fold(mesh: trimesh.Trimesh, pictures: Relief) -> SymmetryFold:
     """The fold of a mesh in its canonical frame, from its relief and from its turned surface; 36 means round."""
-    if _differ(pictures, turned(pictures, _QUARTER @ _QUARTER)):
+    if _differ(pictures, turn(pictures, _QUARTER @ _QUARTER)):
         return next((fold for fold in _ODD_FOLDS if coincides(mesh, fold)), 1)
     x, y, _ = mesh.extents
-    if abs(x - y) > 0.03 * max(x, y) or _differ(pictures, turned(pictures, _QUARTER)):
+    if abs(x - y) > 0.03 * max(x, y) or _differ(pictures, turn(pictures, _QUARTER)):
         return 6 if coincides(mesh, 6) else 2
-    if _differ(pictures, _turned_by(mesh, 30.0)) or _differ(pictures, _turned_by(mesh, 45.0)):
+    if _differ(pictures, _turn_by(mesh, 30.0)) or _differ(pictures, _turn_by(mesh, 45.0)):
         return 8 if coincides(mesh, 8) else 4
     return 36
 
@@ -105,7 +105,7 @@ def coincides(mesh: trimesh.Trimesh, fold: int) -> bool:
     return bool(np.quantile(away, _NEARLY_ALL) < _COINCIDES * mesh.extents.max())
 
 
-def _turned_by(mesh: trimesh.Trimesh, angle_deg: float) -> Relief:
+def _turn_by(mesh: trimesh.Trimesh, angle_deg: float) -> Relief:
     R = trimesh.transformations.rotation_matrix(np.radians(angle_deg), (0, 0, 1))[:3, :3]
     return relief(trimesh.Trimesh(np.asarray(mesh.vertices) @ R.T, mesh.faces, process=False))
 

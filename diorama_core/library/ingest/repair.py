@@ -27,8 +27,8 @@ from trimesh.visual.material import PBRMaterial
 from trimesh.visual.texture import TextureVisuals
 
 from diorama_core.errors import DioramaError, LibraryError
-from diorama_core.io.bounded import shortened
-from diorama_core.io.contained import shown
+from diorama_core.io.bounded import shorten
+from diorama_core.io.contained import quote
 from diorama_core.io.text import clean_text
 from diorama_core.library import part_notes
 from diorama_core.library.furniture.joints import Joint, JointKind
@@ -103,7 +103,7 @@ class Repaired:
         )
 
 
-def repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
+def repair(scene: trimesh.Scene, limits: Limits) -> Repaired:
     """Sound triangles of a scene.
 
     Left out, with a warning: points that are not finite and triangles on them, triangles without area, lines and point
@@ -113,20 +113,20 @@ def repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
         LibraryError: when no triangle with area is left, there are too many, or the file's numbers make no sense.
     """
     try:
-        return _repaired(scene, limits)
+        return _repair(scene, limits)
     except DioramaError:
         raise
     except Exception as error:  # loaders hand on whatever malformed bytes say
-        reason = f"{type(error).__name__}: {shortened(str(error), 100)}"
+        reason = f"{type(error).__name__}: {shorten(str(error), 100)}"
         raise LibraryError(f"malformed geometry ({reason}); export the model again") from error
 
 
-def _repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
+def _repair(scene: trimesh.Scene, limits: Limits) -> Repaired:
     notes: list[str] = []
     meshes = []
     total = 0
     materials: dict[int, PBRMaterial] = {}
-    for name, mesh, T, part in _placed(scene, notes):
+    for name, mesh, T, part in _parts(scene, notes):
         total += len(mesh.faces)
         if total > limits.triangles:
             raise LibraryError(f"more than {limits.triangles} triangles; simplify it first")
@@ -149,7 +149,7 @@ def _repaired(scene: trimesh.Scene, limits: Limits) -> Repaired:
     return Repaired(thick, tuple(dict.fromkeys(notes)))
 
 
-def _placed(
+def _parts(
     scene: trimesh.Scene, notes: list[str]
 ) -> Iterator[tuple[str, trimesh.Trimesh, Float[np.ndarray, "4 4"], PartNotes | None]]:
     for node in scene.graph.nodes_geometry:
@@ -281,7 +281,7 @@ def notes_of_node(scene: trimesh.Scene, node: str, warnings: list[str]) -> PartN
         warnings: gets a line for each extra that cannot be read, which is then left out.
     """
     role, stretches, joint = "", None, None
-    for holder, extras in _said(scene, node):
+    for holder, extras in _extras(scene, node):
         if not role and "role" in extras:
             role = clean_text(str(extras["role"])).strip()[:MAX_ROLE]
         if stretches is None and "parameter" in extras:
@@ -293,7 +293,7 @@ def notes_of_node(scene: trimesh.Scene, node: str, warnings: list[str]) -> PartN
     return None if notes == PartNotes() else notes
 
 
-def _said(scene: trimesh.Scene, node: str) -> Iterator[tuple[str, dict[str, Any]]]:
+def _extras(scene: trimesh.Scene, node: str) -> Iterator[tuple[str, dict[str, Any]]]:
     """The extras of a node, of its parent, and so on up to the root."""
     tree = scene.graph.transforms
     while node in tree.parents:
@@ -308,7 +308,7 @@ def _stretches(words: str, node: str, warnings: list[str]) -> tuple[bool, bool, 
     sides = words.replace(",", " ").lower().split()
     if sides != ["rigid"] and (not sides or set(sides) - set(SIDES)):
         warnings.append(
-            f'node {shown(node)}: parameter {shown(words)} is left out; write "rigid", or sides such as "width height"'
+            f'node {quote(node)}: parameter {quote(words)} is left out; write "rigid", or sides such as "width height"'
         )
         return None
     return SIDES[0] in sides, SIDES[1] in sides, SIDES[2] in sides
@@ -317,10 +317,10 @@ def _stretches(words: str, node: str, warnings: list[str]) -> tuple[bool, bool, 
 def _joint(words: str, name: str, T_file_node: Float[np.ndarray, "4 4"], warnings: list[str]) -> Joint | None:
     """The joint that a text describes; the mirror image of a turn goes the other way."""
     try:
-        kind, axis, lower, upper = _parsed(words.lower())
+        kind, axis, lower, upper = _parse(words.lower())
     except ValueError:
         warnings.append(
-            f'{shown(name)}: joint {shown(words)} is left out; write "revolute y 0 110" (degrees, from -360 to 360), '
+            f'{quote(name)}: joint {quote(words)} is left out; write "revolute y 0 110" (degrees, from -360 to 360), '
             '"prismatic z 0 0.4" (metres) or "continuous y"; 0 is within the limits'
         )
         return None
@@ -336,7 +336,7 @@ def _joint(words: str, name: str, T_file_node: Float[np.ndarray, "4 4"], warning
     return Joint(clean_text(name).strip()[:MAX_ROLE], kind, (x, y, z), (dx, dy, dz), lower, upper)
 
 
-def _parsed(words: str) -> tuple[JointKind, Float[np.ndarray, "3"], float, float]:
+def _parse(words: str) -> tuple[JointKind, Float[np.ndarray, "3"], float, float]:
     """Kind, axis and limits (radians or metres); raises `ValueError` for any other text."""
     kind, axis, *limits = words.replace(",", " ").split()
     if kind not in KINDS or axis.removeprefix("-") not in ("x", "y", "z"):

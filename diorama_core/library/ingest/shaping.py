@@ -22,9 +22,9 @@ from diorama_core.library.ingest.joint import Evidence
 from diorama_core.library.ingest.known_shapes import KnownShapes
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
 from diorama_core.library.ingest.models import RawModel, read_model
-from diorama_core.library.ingest.names import NameEvidence, named_categories, words_of
-from diorama_core.library.ingest.relief import relief, symmetry_fold, turned
-from diorama_core.library.ingest.repair import Repaired, repaired
+from diorama_core.library.ingest.names import NameEvidence, name_evidence, words_of
+from diorama_core.library.ingest.relief import relief, symmetry_fold, turn
+from diorama_core.library.ingest.repair import Repaired, repair
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.part_notes import PartNotes, notes_of, transform
 from diorama_core.library.record import Guess, Shape, ShapeLibrary, SymmetryFold, usual_contact_faces
@@ -124,8 +124,8 @@ def evidence_of(
         DioramaError: with the reason, when the file cannot be used.
     """
     raw = read_model(source.path, source.root, limits, source.member)
-    whole = repaired(raw.scene, limits).whole
-    evidence = frame_evidence(whole, relief(whole), _named(raw, source), known, source.given)
+    whole = repair(raw.scene, limits).whole
+    evidence = frame_evidence(whole, relief(whole), _names(raw, source), known, source.given)
     return evidence, raw.convention, float(whole.extents.max())
 
 
@@ -148,49 +148,49 @@ def ingest_model(
         limits: What is refused.
         square: Whether a model that stands turned in its file is squared; not where its own axes are known.
     """
-    model, given, remarks = repaired(raw.scene, limits), source.given, raw.warnings
+    model, given, remarks = repair(raw.scene, limits), source.given, raw.warnings
     convention = source.convention or raw.convention
     if raw.own is not None and given.up is None and given.front is None:
-        model = _turned_model(model, raw.own.R_file_object.T)
+        model = _turn(model, raw.own.R_file_object.T)
         facts = Given(
             up="+z", front="+x", unit_m=1.0, category=raw.own.category, reason="the file, which Diorama wrote"
         )
         given = given.override(facts)
     elif square:
-        model, note = _squared(model, convention, given)
+        model, note = _square(model, convention, given)
         remarks = (*remarks, *note)
     whole = model.whole
     pictures = relief(whole)
-    frame = guess_frame(whole, pictures, convention, _named(raw, source), known, given)
+    frame = guess_frame(whole, pictures, convention, _names(raw, source), known, given)
     size = frame.unit_m * whole.extents.max()
     if not TINY_M <= size <= HUGE_M:
         raise LibraryError(f"it would be {size:.3g} m large; give its unit with --unit")
     meshes = _canonical(model, frame)
-    fold = symmetry_fold(_whole(meshes), turned(pictures, frame.R_shape_file))
+    fold = symmetry_fold(_whole(meshes), turn(pictures, frame.R_shape_file))
     record = _record(source, given, frame, fold)
-    return packed_shape(record, meshes, painter, source.key, (*remarks, *model.warnings))
+    return pack_shape(record, meshes, painter, source.key, (*remarks, *model.warnings))
 
 
-def _named(raw: RawModel, source: ModelSource) -> NameEvidence:
-    return named_categories(source.stem, _folders(source), raw.names)
+def _names(raw: RawModel, source: ModelSource) -> NameEvidence:
+    return name_evidence(source.stem, _folders(source), raw.names)
 
 
-def _squared(model: Repaired, convention: Convention, given: Given) -> tuple[Repaired, tuple[str, ...]]:
+def _square(model: Repaired, convention: Convention, given: Given) -> tuple[Repaired, tuple[str, ...]]:
     """A model that stands turned about what may be its vertical, squared; and a line that says so."""
     up = given.up or (PROMISED_UP if convention.promises else None)
     R, angle = squaring_turn(model.whole, (0, 1, 2) if up is None else ("xyz".index(up[1]),))
     if angle == 0.0:
         return model, ()
-    return _turned_model(model, R), (f"it stood turned by {abs(np.degrees(angle)):.0f} degrees in its file",)
+    return _turn(model, R), (f"it stood turned by {abs(np.degrees(angle)):.0f} degrees in its file",)
 
 
-def _turned_model(model: Repaired, R: Float[np.ndarray, "3 3"]) -> Repaired:
+def _turn(model: Repaired, R: Float[np.ndarray, "3 3"]) -> Repaired:
     T = np.eye(4)
     T[:3, :3] = R
     return Repaired(tuple(transform(m, T) for m in model.meshes), model.warnings)
 
 
-def packed_shape(
+def pack_shape(
     record: Shape, meshes: Sequence[trimesh.Trimesh], painter: Painter | None, key: str, warnings: tuple[str, ...]
 ) -> Ingested:
     """Measure and pack meshes in the canonical frame; what follows from them replaces what the record says.
@@ -242,10 +242,10 @@ def _canonical(model: Repaired, frame: Frame) -> list[trimesh.Trimesh]:
         textured = isinstance(mesh.visual, TextureVisuals)
         key = id(mesh.visual.material) if textured else -1 - len(groups)
         groups.setdefault((key, notes_of(mesh)), []).append(mesh)
-    return [_joined(group, T) for group in groups.values()]
+    return [_join(group, T) for group in groups.values()]
 
 
-def _joined(group: Sequence[trimesh.Trimesh], T: Float[np.ndarray, "4 4"]) -> trimesh.Trimesh:
+def _join(group: Sequence[trimesh.Trimesh], T: Float[np.ndarray, "4 4"]) -> trimesh.Trimesh:
     counts = np.cumsum([0, *(len(m.vertices) for m in group)])
     notes, visual = notes_of(group[0]), group[0].visual
     noted = {} if notes is None else {part_notes.KEY: notes.transformed(T).as_json()}

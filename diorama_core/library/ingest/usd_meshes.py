@@ -23,7 +23,7 @@ REACH = 1e8
 def usd_scene(stage: Any) -> trimesh.Scene:
     """Meshes of a stage with one plain material each, as a scene in the stage's frame."""
     scene, triangles = trimesh.Scene(), 0
-    for prim, node, M in _drawn(stage):
+    for prim, node, M in _meshes(stage):
         mesh = _usd_mesh(prim, M)
         triangles += 0 if mesh is None else len(mesh.faces)
         if triangles > DEFAULT_LIMITS.triangles or len(scene.geometry) > DEFAULT_LIMITS.nodes:
@@ -36,7 +36,7 @@ def usd_scene(stage: Any) -> trimesh.Scene:
     return scene
 
 
-def _drawn(stage: Any) -> Iterator[tuple[Any, str, Float[np.ndarray, "4 4"]]]:
+def _meshes(stage: Any) -> Iterator[tuple[Any, str, Float[np.ndarray, "4 4"]]]:
     """Every mesh that is drawn, the path it is drawn at, and its frame in the stage's; copies of instancers each."""
     from pxr import Usd, UsdGeom
 

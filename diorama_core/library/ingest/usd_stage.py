@@ -13,7 +13,7 @@ from jaxtyping import Float
 from shapely.errors import ShapelyError
 
 from diorama_core.errors import InputError, UnavailableError
-from diorama_core.io.bounded import megabytes, shortened
+from diorama_core.io.bounded import megabytes, shorten
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 
@@ -21,7 +21,7 @@ Z_UP = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]
 """A frame with +Y up (glTF's, USD's usual one) to one with +Z up."""
 
 
-def opened_stage(path: Path) -> Any:
+def open_stage(path: Path) -> Any:
     """A USD stage.
 
     Raises:
@@ -53,7 +53,7 @@ def usd_errors(path: Path) -> Iterator[None]:
     except Tf.ErrorException as error:
         raise InputError(f"{path.name} cannot be read as USD ({_reason(error, path)}); export it again") from error
     except (ValueError, TypeError, LookupError, ArithmeticError, ShapelyError) as error:
-        reason = shortened(str(error))
+        reason = shorten(str(error))
         raise InputError(f"{path.name}: something in it makes no sense ({reason}); export it again") from error
 
 
@@ -64,7 +64,7 @@ def _reason(error: Exception, path: Path) -> str:
     except UnicodeDecodeError:  # OpenUSD quotes bytes of the file
         return "it is damaged"
     last = words.strip().rpartition("\n")[2].rpartition(" : ")[2]
-    return shortened(last.replace(f"@{path}@", "").replace(str(path), path.name).strip(" '")) or "it is damaged"
+    return shorten(last.replace(f"@{path}@", "").replace(str(path), path.name).strip(" '")) or "it is damaged"
 
 
 def _stay_beside(path: Path) -> None:
@@ -87,7 +87,7 @@ def _stay_beside(path: Path) -> None:
             if not os.path.lexists(place):
                 continue
             if not files.holds(place):
-                raise InputError(f"{path.name} refers to a file outside its folder ({shortened(asset)}); put it beside")
+                raise InputError(f"{path.name} refers to a file outside its folder ({shorten(asset)}); put it beside")
             waiting.append(other)
 
 

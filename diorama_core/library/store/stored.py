@@ -60,7 +60,7 @@ class StoredLibrary:
 
     def __reduce__(self) -> tuple[Callable[[Path], StoredLibrary], tuple[Path]]:
         """Other processes open it themselves, once."""
-        return _opened, (self.folder,)
+        return _open, (self.folder,)
 
     def __len__(self) -> int:
         return self._records.count()
@@ -80,7 +80,7 @@ class StoredLibrary:
     def mesh(self, shape_id: str) -> trimesh.Trimesh:
         """Geometry only, one mesh in the canonical frame. Shared: do not change it."""
         model = self._row(shape_id).model
-        return self._meshes.get(model, lambda: _merged(self._scene(shape_id, model)))
+        return self._meshes.get(model, lambda: _merge(self._scene(shape_id, model)))
 
     def parts(self, shape_id: str) -> trimesh.Scene:
         """Geometry with materials, in the canonical frame. Shared: do not change it."""
@@ -147,7 +147,7 @@ class StoredLibrary:
         return row
 
     def _scene(self, shape_id: str, model: str) -> trimesh.Scene:
-        return self._scenes.get(model, lambda: _loaded(self._read(shape_id, model), shape_id))
+        return self._scenes.get(model, lambda: _load(self._read(shape_id, model), shape_id))
 
     def _model_path(self, model: str) -> Path:
         return self.folder / "models" / model[:2] / f"{model}.glb"
@@ -173,11 +173,11 @@ class StoredLibrary:
 
 
 @lru_cache(maxsize=4)
-def _opened(folder: Path) -> StoredLibrary:
+def _open(folder: Path) -> StoredLibrary:
     return StoredLibrary(folder)
 
 
-def _loaded(glb: bytes, shape_id: str) -> trimesh.Scene:
+def _load(glb: bytes, shape_id: str) -> trimesh.Scene:
     try:
         scene = trimesh.load_scene(io.BytesIO(glb), file_type="glb", process=False)
         _decode(scene)
@@ -196,7 +196,7 @@ def _decode(scene: trimesh.Scene) -> None:
                 picture.load()
 
 
-def _merged(scene: trimesh.Scene) -> trimesh.Trimesh:
+def _merge(scene: trimesh.Scene) -> trimesh.Trimesh:
     vertices, faces, count = [np.zeros((0, 3))], [np.zeros((0, 3), np.int64)], 0
     for node in scene.graph.nodes_geometry:
         T, name = scene.graph[node]

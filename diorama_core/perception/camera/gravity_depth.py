@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int
 
-from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_normals_camera
+from diorama_core.geometry.depth_grid import points_camera, reduce, smooth_normals_camera
 from diorama_core.perception.camera.frames import world_frame
 from diorama_core.scene.types import Intrinsics
 
@@ -102,7 +102,7 @@ def frame_from_depth(
 
 
 def _samples(depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics) -> _Samples:
-    small, k = reduced(depth_m, intrinsics, SETTINGS.working_side_px)
+    small, k = reduce(depth_m, intrinsics, SETTINGS.working_side_px)
     points = points_camera(small, k)
     normals = smooth_normals_camera(small, k)
     known = (normals != 0).any(axis=-1)

@@ -14,7 +14,7 @@ from diorama_core.artefacts import Box, DetectedObject, LabelledBox, Photo, Seen
 from diorama_core.io.assets import has_own_recogniser
 from diorama_core.library.labels import is_named, meanings
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
-from diorama_core.models.boxes import Detections, areas, joined, overlaps
+from diorama_core.models.boxes import Detections, areas, join, overlaps
 from diorama_core.models.recogniser import Recogniser, own_recogniser
 from diorama_core.progress import Progress
 from diorama_core.protocols import DetectionStage
@@ -114,7 +114,7 @@ def clickable(recogniser: Recogniser, photo: Photo, known: Sequence[LabelledBox]
     """
     faint = recogniser.alternatives(photo.rgb, FAINT, MAX_FAINT)
     corners = np.array([k.box for k in known], dtype=float).reshape(-1, 4)
-    return joined((faint, Detections(corners, np.ones(len(known)), np.zeros(len(known), dtype=int))))
+    return join((faint, Detections(corners, np.ones(len(known)), np.zeros(len(known), dtype=int))))
 
 
 def clicked_box(detections: Detections, x: float, y: float) -> Box | None:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from diorama_core.errors import UnavailableError
-from diorama_core.io.bounded import read_bytes, shortened
+from diorama_core.io.bounded import read_bytes, shorten
 from diorama_core.io.derived import write_derived
 from diorama_core.perception.language.replies import json_in
 from diorama_core.progress import Progress
@@ -215,7 +215,7 @@ class LmmClient:
             ]
         unusable = UnusableReplyError(
             f"{self.settings.model} gave no usable answer in {1 + self.settings.re_asks} tries "
-            f"({shortened(problem)}); try another model (DIORAMA_LMM_MODEL)"
+            f"({shorten(problem)}); try another model (DIORAMA_LMM_MODEL)"
         )
         unusable.usage = usage
         raise unusable
@@ -354,7 +354,7 @@ def _validated(text: str, schema: type[T]) -> tuple[T | None, str]:
         return schema.model_validate(document), ""
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
-        return None, shortened(f"{'.'.join(map(str, first['loc'])) or 'the object'}: {first['msg'].lower()}")
+        return None, shorten(f"{'.'.join(map(str, first['loc'])) or 'the object'}: {first['msg'].lower()}")
 
 
 def strict_schema(schema: type[BaseModel]) -> dict[str, Any]:

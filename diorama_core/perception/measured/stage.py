@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.artefacts import CameraEstimate, DetectedObject, Inputs, ObjectGeometry
-from diorama_core.geometry.depth_grid import points_camera, reduced, smooth_normals_camera
+from diorama_core.geometry.depth_grid import points_camera, reduce, smooth_normals_camera
 from diorama_core.library.taxonomy import Category, resolve
 from diorama_core.perception.measured.boxes import TurnedExtent, completed, observed_extent, to_cuboid
 from diorama_core.perception.measured.cloud import MIN_POINTS, SETTINGS, MeasuredSettings, object_points
@@ -113,7 +113,7 @@ def posed_camera(
 
 def floor_distance(depth_m: Float[np.ndarray, "h w"], camera: CameraEstimate) -> float | None:
     """How far the lowest large level surface lies below the camera; none when there is no such surface."""
-    small, k = reduced(np.asarray(depth_m, dtype=np.float32), camera.best.intrinsics, 320)
+    small, k = reduce(np.asarray(depth_m, dtype=np.float32), camera.best.intrinsics, 320)
     R = camera.best.R_world_camera
     points, normals = points_camera(small, k) @ R.T, smooth_normals_camera(small, k) @ R.T
     level = (normals[..., 2] > 0.9) & (small > 0) & (points[..., 2] < -0.3)

@@ -15,7 +15,7 @@ from diorama_app.commands.insert import insert_shape
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.errors import EditRefused, InputError
-from diorama_core.library.ingest.shaping import packed_shape
+from diorama_core.library.ingest.shaping import pack_shape
 from diorama_core.library.record import Shape
 from diorama_core.library.user_library import UserLibrary
 from diorama_core.scene.types import SceneObject
@@ -28,7 +28,7 @@ def session(server: viser.ViserServer, tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setenv("DIORAMA_LIBRARIES", str(tmp_path / "libraries"))
     user_library = UserLibrary(PlainLibrary())
     lying = trimesh.creation.box((1.8, 0.6, 0.3))  # a bookcase that was read lying on its back
-    user_library.own().add(packed_shape(Shape("my-case", "box", "my case", (1.0, 1.0, 1.0)), [lying], None, "key", ()))
+    user_library.own().add(pack_shape(Shape("my-case", "box", "my case", (1.0, 1.0, 1.0)), [lying], None, "key", ()))
     made = EditorSession(server, user_library, tmp_path / "projects", Client)
     made.checker.look_at = lambda scene: None  # its thread would post to the UI thread
     made.open_project(make_project(tmp_path / "projects" / "demo"))

@@ -12,7 +12,7 @@ from diorama_app.commands.insert import insert_shape
 from diorama_app.panels.library import LibraryPanel
 from diorama_app.panels.own_models import OwnModel, OwnShelf
 from diorama_app.web.html import Action
-from diorama_core.library.ingest.shaping import packed_shape
+from diorama_core.library.ingest.shaping import pack_shape
 from diorama_core.library.record import Assumption, Guess, Shape
 from diorama_core.library.user_library import UserLibrary
 from diorama_core.scene.types import SceneObject
@@ -26,7 +26,7 @@ def library(session, client, page: Page, tmp_path: Path, monkeypatch: pytest.Mon
     made = UserLibrary(PlainLibrary())
     for name in ("case", "vase"):
         shape = Shape(f"my-{name}", "box", name, (1.0, 1.0, 1.0))
-        made.own().add(packed_shape(shape, [trimesh.creation.box((0.3, 0.6, 0.3))], None, name, ()))
+        made.own().add(pack_shape(shape, [trimesh.creation.box((0.3, 0.6, 0.3))], None, name, ()))
     session.library = session.shapes._library = made
     panel = LibraryPanel(page, client)
     client.panels = [panel]
@@ -90,7 +90,7 @@ def model(session, client, page: Page, tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setenv("DIORAMA_LIBRARIES", str(tmp_path / "libraries"))
     library = UserLibrary(PlainLibrary())
     shape = Shape("my-case", "box", "my case", (1.0, 1.0, 1.0), guess=GUESS)
-    library.own().add(packed_shape(shape, [trimesh.creation.box((1.8, 0.6, 0.3))], None, "key", ()))
+    library.own().add(pack_shape(shape, [trimesh.creation.box((1.8, 0.6, 0.3))], None, "key", ()))
     session.library = session.shapes._library = library
     client.panels = [OwnModel(page, client)]
     insert_shape(client, "my-case")

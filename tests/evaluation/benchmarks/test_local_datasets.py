@@ -22,9 +22,9 @@ from diorama_core.evaluation.benchmarks.local_datasets import (
 )
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, yaw_rotation
-from diorama_core.synthesis import furnished_room, render_truth, sample_cameras
+from diorama_core.synthesis import furnish_room, render_truth, sample_cameras
 from diorama_core.synthesis.artefacts import true_supports
-from diorama_core.synthesis.truth import moved
+from diorama_core.synthesis.truth import transform
 from tests.few_shapes import few_shapes
 
 SIZE = (320, 240)
@@ -34,7 +34,7 @@ SIZE = (320, 240)
 def ssdb(tmp_path_factory):
     """One picture of a small room."""
     library = built_in_library()
-    room = furnished_room(16, "bathroom", library, clutter=0)
+    room = furnish_room(16, "bathroom", library, clutter=0)
     view = render_truth(room, sample_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
     folder = tmp_path_factory.mktemp("ssdb") / "scene_01"
     folder.mkdir()
@@ -71,7 +71,7 @@ def _scan2cad_model(item: SceneObject) -> dict[str, object]:
 @pytest.mark.slow
 def test_a_folder_of_scan2cad_is_built_and_fills_the_table_by_category(tmp_path):
     library = built_in_library()
-    room = furnished_room(3, "office", library, clutter=2)
+    room = furnish_room(3, "office", library, clutter=2)
     view = render_truth(room, sample_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
     shown = [o for o in view.scene.objects if o.mask_id is not None]
     seen = [o for name, most in (("chair", 2), ("desk", 1)) for o in [s for s in shown if s.category == name][:most]]
@@ -148,10 +148,10 @@ def test_models_are_aligned_in_the_world_of_the_scan():
     item = SceneObject("a", "chair", "chair", "s", (0.5, 0.5, 0.9), pose)
     elsewhere = np.eye(4)
     elsewhere[:3, :3], elsewhere[:3, 3] = yaw_rotation(-1.0), [4, 5, 0]
-    scene = moved(Scene(camera=frame.camera, objects=(item,)), elsewhere)
+    scene = transform(Scene(camera=frame.camera, objects=(item,)), elsewhere)
     assert alignments([model], scene, frame) == (("chair", True),)
     assert alignments([model, model], scene, frame) == (("chair", True), ("chair", False))
-    shifted = moved(Scene(camera=frame.camera, objects=(item,)), elsewhere)
+    shifted = transform(Scene(camera=frame.camera, objects=(item,)), elsewhere)
     far = SceneObject("a", "chair", "chair", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose.moved([0.3, 0, 0]))
     assert alignments([model], Scene(camera=shifted.camera, objects=(far,)), frame) == (("chair", False),)
     table = SceneObject("a", "table", "table", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose)

@@ -15,7 +15,7 @@ from diorama_core.evaluation.adapters.photo_annotations import read_annotations
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.evaluation.reports import tables
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.synthesis import furnished_room, render_truth, sample_cameras
+from diorama_core.synthesis import furnish_room, render_truth, sample_cameras
 
 SIZE = (240, 180)
 ANNOTATIONS = Path(__file__).parents[2] / "photo_annotations.json"
@@ -25,7 +25,7 @@ ANNOTATIONS = Path(__file__).parents[2] / "photo_annotations.json"
 def made(tmp_path_factory):
     """A rendered bathroom with three annotations, one photo of another size, and one that is not there."""
     library = built_in_library()
-    room = furnished_room(16, "bathroom", library, clutter=0)
+    room = furnish_room(16, "bathroom", library, clutter=0)
     view = render_truth(room, sample_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
     folder = tmp_path_factory.mktemp("photos")
     for name in ("made", "other"):

@@ -13,7 +13,7 @@ from diorama_core.evaluation.benchmarks import relations as relations_bench
 from diorama_core.evaluation.benchmarks.relations import RelationCount, relations_of
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.perception.language.client import LmmSettings
-from diorama_core.synthesis import ROOM_KINDS, TruthView, furnished_room, render_truth, sample_cameras
+from diorama_core.synthesis import ROOM_KINDS, TruthView, furnish_room, render_truth, sample_cameras
 from tests.made_once import made_once
 from tests.perception.language.stub_lmm import StubLmm, answering
 
@@ -25,7 +25,7 @@ AT_LEAST = 0.85
 
 def _view(seed: int) -> TruthView:
     library = built_in_library()
-    room = furnished_room(1000 + seed, ROOM_KINDS[seed % len(ROOM_KINDS)], library)
+    room = furnish_room(1000 + seed, ROOM_KINDS[seed % len(ROOM_KINDS)], library)
     camera = sample_cameras(room, library, seed, count=1, size=SIZE)[0]
     return render_truth(room, camera, library, SIZE, with_empty_room=False, sensor=False)
 

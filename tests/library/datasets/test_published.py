@@ -11,7 +11,7 @@ import pytest
 import trimesh
 
 from diorama_core.errors import InputError
-from diorama_core.library.datasets import as_sources, dataset_named, published, recognised
+from diorama_core.library.datasets import as_sources, dataset_named, published, recognise
 from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.shaping import ModelSource
@@ -112,7 +112,7 @@ def test_models_with_what_the_set_says_of_them(name: str, tmp_path: Path) -> Non
 @pytest.mark.parametrize("name", MAKERS)
 def test_a_copy_is_recognised_and_its_models_can_be_read(name: str, tmp_path: Path) -> None:
     found = made(name, tmp_path)
-    dataset = recognised(tmp_path)
+    dataset = recognise(tmp_path)
     assert dataset is not None
     assert dataset.name == name
     assert all(len(read_model(s.path, s.root).scene.geometry) for s in found)
@@ -142,7 +142,7 @@ def test_captions_and_words_are_retained(tmp_path: Path) -> None:
 
 def test_anyones_folder_is_no_data_set(tmp_path: Path) -> None:
     put(tmp_path / "chairs" / "a.glb", chair())
-    assert recognised(tmp_path) is None
+    assert recognise(tmp_path) is None
 
 
 def test_broken_metadata_names_the_file(tmp_path: Path) -> None:

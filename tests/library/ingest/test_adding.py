@@ -16,7 +16,7 @@ from PIL import Image
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.library.ingest import adding
 from diorama_core.library.ingest.adding import Added, add_models
-from diorama_core.library.ingest.correct import corrected
+from diorama_core.library.ingest.correct import correct
 from diorama_core.library.ingest.finding import model_files, read_table, sources
 from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
@@ -54,8 +54,8 @@ def _few_known_shapes(monkeypatch: pytest.MonkeyPatch) -> None:
         np.log([mesh.extents for _, mesh in rows]),
     )
     monkeypatch.setattr(adding, "known_shapes", lambda **_: known)
-    adding._known.cache_clear()
-    monkeypatch.setattr(adding, "_bound_memory", lambda most: None)
+    adding._cached_shapes.cache_clear()
+    monkeypatch.setattr(adding, "_limit_memory", lambda most: None)
 
 
 @pytest.fixture
@@ -210,7 +210,7 @@ def test_a_wrong_guess_is_put_right(folder: Path, library: StoredLibrary) -> Non
     added(folder, library, Given(up="+z", front="+x", unit_m=1.0))  # wrong for the GLB: it lies on its back
     lying = library.shape("chair")
     assert lying.size_m[2] == pytest.approx(chair().extents[1], abs=1e-3)
-    library.add(corrected(library, "chair", up="+y", front="+z", category="office chair", source_key="k"))
+    library.add(correct(library, "chair", up="+y", front="+z", category="office chair", source_key="k"))
     shape = library.shape("chair")
     assert np.allclose(shape.size_m, chair().extents, atol=1e-3)
     assert shape.category == "office chair"
@@ -224,7 +224,7 @@ def test_a_wrong_guess_is_put_right(folder: Path, library: StoredLibrary) -> Non
 def test_a_size_is_put_right(folder: Path, library: StoredLibrary) -> None:
     added(folder, library)
     before = library.shape("chair")
-    library.add(corrected(library, "chair", scale=0.5))
+    library.add(correct(library, "chair", scale=0.5))
     after = library.shape("chair")
     assert np.allclose(after.size_m, np.array(before.size_m) / 2)
     assert np.allclose(after.surfaces[0].height_m, before.surfaces[0].height_m / 2, atol=1e-3)
@@ -233,9 +233,9 @@ def test_a_size_is_put_right(folder: Path, library: StoredLibrary) -> None:
 def test_a_correction_that_makes_no_sense_is_refused(folder: Path, library: StoredLibrary) -> None:
     added(folder, library)
     with pytest.raises(InputError, match="right angles"):
-        corrected(library, "chair", up="+x", front="-x")
+        correct(library, "chair", up="+x", front="-x")
     with pytest.raises(InputError, match="positive factor"):
-        corrected(library, "chair", scale=0.0)
+        correct(library, "chair", scale=0.0)
 
 
 def test_a_source_is_a_plain_value(folder: Path) -> None:

@@ -23,16 +23,16 @@ from diorama_core.library.ingest.joint import exporter_of, groups_of, joint_conv
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import MODEL_FORMS, form_of, read_model
 from diorama_core.library.ingest.obj import absolute_indices, plain_mtl
-from diorama_core.library.ingest.repair import repaired, with_thickness
+from diorama_core.library.ingest.repair import repair, with_thickness
 from diorama_core.library.ingest.three_ds import read_3ds
 from diorama_core.library.ingest.three_mf import read_3mf
-from diorama_core.library.ingest.usd_stage import frame_of, opened_stage
+from diorama_core.library.ingest.usd_stage import frame_of, open_stage
 from diorama_core.library.kinds import is_possible
 from tests.library.ingest.models import chair, y_up
 
 
 def read(path: Path) -> trimesh.Trimesh:
-    return repaired(read_model(path, path.parent).scene, DEFAULT_LIMITS).whole
+    return repair(read_model(path, path.parent).scene, DEFAULT_LIMITS).whole
 
 
 def counting_back(mesh: trimesh.Trimesh) -> bytes:
@@ -139,7 +139,7 @@ def test_what_diorama_compressed_comes_back_as_it_was(tmp_path: Path, compress: 
     raw = read_model(tmp_path / "one.glb", tmp_path)
     assert raw.own is not None
     assert raw.own.category == item.category
-    whole = repaired(raw.scene, DEFAULT_LIMITS).whole
+    whole = repair(raw.scene, DEFAULT_LIMITS).whole
     assert np.ptp(whole.vertices @ raw.own.R_file_object, axis=0) == pytest.approx(np.array(item.size_m), abs=2e-3)
 
 
@@ -245,7 +245,7 @@ def test_usd_says_its_frame_and_is_read_in_it(tmp_path: Path) -> None:
         f"    int[] faceVertexCounts = [{', '.join(['3'] * len(mesh.faces))}]\n"
         f"    int[] faceVertexIndices = [{indices}]\n    point3f[] points = [{points}]\n}}\n"
     )
-    assert frame_of(opened_stage(tmp_path / "chair.usda")) == ("+z", 0.01)
+    assert frame_of(open_stage(tmp_path / "chair.usda")) == ("+z", 0.01)
     raw = read_model(tmp_path / "chair.usda", tmp_path)
     assert raw.scene.extents == pytest.approx(chair().extents * cm, rel=1e-5)
     assert raw.convention.up["+z"] > 0.9

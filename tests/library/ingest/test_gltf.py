@@ -15,7 +15,7 @@ from PIL import Image
 
 from diorama_core.errors import LibraryError
 from diorama_core.io.glb import split_glb, write_glb
-from diorama_core.library.ingest.gltf import node_names, packed
+from diorama_core.library.ingest.gltf import node_names, pack_glb
 from diorama_core.library.ingest.limits import Limits
 from diorama_core.library.ingest.references import References
 
@@ -46,7 +46,7 @@ def pack(tmp_path: Path, data: bytes, limits: Limits | None = None) -> tuple[dic
     """Document, binary chunk and warnings."""
     limits = limits or Limits()
     references = References(tmp_path, tmp_path, limits)
-    text, binary = split_glb(packed(data, references, limits))
+    text, binary = split_glb(pack_glb(data, references, limits))
     return json.loads(text), binary, references.warnings
 
 
@@ -75,7 +75,7 @@ def test_points_end_up_inside_one_glb(tmp_path: Path, kind: str) -> None:
     assert doc["buffers"] == [{"byteLength": len(binary)}]
     assert warnings == []
     limits = Limits()
-    glb = packed(source(kind, tmp_path), References(tmp_path, tmp_path, limits), limits)
+    glb = pack_glb(source(kind, tmp_path), References(tmp_path, tmp_path, limits), limits)
     mesh = trimesh.load(io.BytesIO(glb), file_type="glb", force="mesh")
     np.testing.assert_allclose(mesh.bounds, [[0, 0, 0], [1, 2, 0]])
 

@@ -16,9 +16,9 @@ from diorama_core.library.ingest.guess import Frame, guess_frame
 from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes, relief_features
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import read_model
-from diorama_core.library.ingest.names import NameEvidence, named_categories
-from diorama_core.library.ingest.relief import Relief, quarter_turns, relief, turned
-from diorama_core.library.ingest.repair import repaired
+from diorama_core.library.ingest.names import NameEvidence, name_evidence
+from diorama_core.library.ingest.relief import Relief, quarter_turns, relief, turn
+from diorama_core.library.ingest.repair import repair
 from tests.library.ingest.models import block, chair, table, y_up
 
 TRUTH = Path(__file__).with_name("cad_truth.csv")
@@ -150,7 +150,7 @@ def models(shared: Path) -> list[Model]:
     found = []
     for row in csv.DictReader(TRUTH.open()):
         raw = read_model(root / row["file"], root)
-        mesh = repaired(raw.scene, DEFAULT_LIMITS).whole
+        mesh = repair(raw.scene, DEFAULT_LIMITS).whole
         found.append(Model(row, raw.names, mesh, relief(mesh)))
     return found
 
@@ -168,8 +168,8 @@ def shares(models: list[Model], known: KnownShapes, convention: Convention, shuf
         R = quarter_turns()[rng.integers(24)] if shuffled else np.eye(3, dtype=int)
         scale = float(rng.choice([1.0, 100.0, 1000.0, 39.37])) if shuffled else 1.0
         moved = trimesh.Trimesh(mesh.vertices @ R.T * scale, mesh.faces, process=False)
-        named = named_categories(Path(row["file"]).stem, [], names)
-        frame = guess_frame(moved, turned(pictures, R), convention, named, known, Given())
+        named = name_evidence(Path(row["file"]).stem, [], names)
+        frame = guess_frame(moved, turn(pictures, R), convention, named, known, Given())
         ups.append(axis_name(R.T @ frame.R_shape_file[2]) == row["up"])
         if row["front"]:
             fronts.append(ups[-1] and axis_name(R.T @ frame.R_shape_file[0]) in row["front"].split("|"))

@@ -18,7 +18,7 @@ from PIL import Image
 from diorama_core.errors import LibraryError
 from diorama_core.library.ingest.limits import Limits
 from diorama_core.library.ingest.models import RawModel, read_model
-from diorama_core.library.ingest.repair import Repaired, repaired
+from diorama_core.library.ingest.repair import Repaired, repair
 from tests.library.ingest.models import TRIANGLE, block, chair, document, write_glb
 
 LIMITS = Limits(file_bytes=2**20, triangles=5_000, nodes=100, image_pixels=2**20, texture_side_px=64)
@@ -27,7 +27,7 @@ Edit = Callable[[dict[str, Any]], None]
 
 def read(path: Path) -> tuple[RawModel, Repaired]:
     raw = read_model(path, path.parent, LIMITS)
-    return raw, repaired(raw.scene, LIMITS)
+    return raw, repair(raw.scene, LIMITS)
 
 
 def edited(edit: Edit) -> dict[str, Any]:

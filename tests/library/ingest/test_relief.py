@@ -4,7 +4,7 @@ import numpy as np
 import trimesh
 
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.library.ingest.relief import coincides, quarter_turns, relief, symmetry_fold, turned
+from diorama_core.library.ingest.relief import coincides, quarter_turns, relief, symmetry_fold, turn
 from tests.library.ingest.models import block, chair, table
 
 
@@ -20,7 +20,7 @@ def test_turning_pictures_is_turning_the_shape() -> None:
     pictures = relief(mesh)
     for R in quarter_turns():
         again = relief(trimesh.Trimesh(mesh.vertices @ R.T, mesh.faces, process=False))
-        assert np.abs(turned(pictures, R) - again).mean() < 0.02
+        assert np.abs(turn(pictures, R) - again).mean() < 0.02
 
 
 def test_a_chair_is_open_below_and_closed_behind() -> None:

@@ -11,18 +11,18 @@ import trimesh
 
 from diorama_core.errors import LibraryError
 from diorama_core.export.colliders import body_of
-from diorama_core.library.ingest.correct import corrected
+from diorama_core.library.ingest.correct import correct
 from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.relief import relief
-from diorama_core.library.ingest.repair import notes_of_node, repaired
+from diorama_core.library.ingest.repair import notes_of_node, repair
 from diorama_core.library.ingest.shaping import ModelSource, ingest_file
-from diorama_core.library.opening import articulation_of, can_open, opened_parts
+from diorama_core.library.opening import articulation_of, can_open, open_parts
 from diorama_core.library.part_notes import KEY, PartNotes, notes_of
 from diorama_core.library.store import StoredLibrary
-from diorama_core.library.stretch import stretched_parts
+from diorama_core.library.stretch import stretch_parts
 from diorama_core.scene.types import Architecture, Pose, Scene, SceneObject, Support
 from tests.app.small_room import room_planes
 from tests.library.ingest.models import table
@@ -49,7 +49,7 @@ def test_a_material_of_an_obj_is_metal_only_where_it_says_so(
     (tmp_path / "box.mtl").write_text(f"newmtl wood\nKd 0.6 0.4 0.2\nKs 0.5 0.5 0.5\nNs 200\n{entries}")
     text = trimesh.creation.box().export(file_type="obj", header=None)
     (tmp_path / "box.obj").write_text(f"mtllib box.mtl\nusemtl wood\n{text}")
-    made = repaired(read_model(tmp_path / "box.obj", tmp_path).scene, DEFAULT_LIMITS)
+    made = repair(read_model(tmp_path / "box.obj", tmp_path).scene, DEFAULT_LIMITS)
     (mesh,) = made.meshes
     assert mesh.visual.material.metallicFactor == metallic
     if roughness is not None:
@@ -81,7 +81,7 @@ def test_the_example_opens_about_its_hinge(library: StoredLibrary) -> None:
     (joint,) = articulation_of(library, "cabinet").joints
     assert (joint.name, joint.kind, joint.upper) == ("door", "hinge", pytest.approx(np.radians(110.0)))
     np.testing.assert_allclose(joint.origin, (0.18, -0.4, 0.1), atol=1e-6)
-    closed, opened = (bounds_of(opened_parts(library, "cabinet", share), "door") for share in (0.0, 1.0))
+    closed, opened = (bounds_of(open_parts(library, "cabinet", share), "door") for share in (0.0, 1.0))
     np.testing.assert_allclose(closed, [[0.18, -0.4, -0.3], [0.2, 0.4, 0.5]], atol=1e-6)
     assert opened[1, 0] > 0.18 + 0.8 * np.sin(np.radians(70.0)), "the leaf stands out into the room"
     np.testing.assert_allclose(opened[:, 2], closed[:, 2], atol=1e-6)
@@ -99,7 +99,7 @@ def test_exports_have_the_joint_and_bodies_of_both_parts(library: StoredLibrary)
 
 def test_legs_keep_their_thickness(library: StoredLibrary) -> None:
     parts, scale = library.parts("cabinet"), (1.0, 2.0, 1.0)
-    wide = stretched_parts(parts, scale)
+    wide = stretch_parts(parts, scale)
     np.testing.assert_allclose(bounds_of(wide, ""), bounds_of(parts, ""), atol=1e-6)
     names = [name for name, mesh in parts.geometry.items() if (notes := notes_of(mesh)) and notes.role == "leg"]
     legs = [body for name in names for body in wide.geometry[name].split(only_watertight=False)]
@@ -107,7 +107,7 @@ def test_legs_keep_their_thickness(library: StoredLibrary) -> None:
 
 
 def test_a_corrected_shape_keeps_its_hinge(library: StoredLibrary) -> None:
-    turned = corrected(library, "cabinet", up="+z", front="+y", scale=2.0)
+    turned = correct(library, "cabinet", up="+z", front="+y", scale=2.0)
     assert turned.record.size_m == pytest.approx((1.6, 0.8, 2.0), abs=1e-5)
     other = StoredLibrary(library.folder.parent / "turned", create=True)
     other.add(turned)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import parse_json, shortened
+from diorama_core.io.bounded import parse_json, shorten
 from diorama_core.perception.inputs.boxes.dictionaries import box_of, score_of, word_of
 from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Size, picture_of
 from diorama_core.perception.inputs.json_values import objects_of, size_of
@@ -96,7 +96,7 @@ def rows_of_results(rows: Sequence[Mapping[str, Any]], text: BoxText) -> list[Ma
     if not matches:
         raise InputError(
             f"{text.source.name}: these COCO results are of {len(pictures)} pictures, and no image_id is that of "
-            f"{shortened(text.photo_name, 60)}; keep the results of this photo"
+            f"{shorten(text.photo_name, 60)}; keep the results of this photo"
         )
     return matches
 

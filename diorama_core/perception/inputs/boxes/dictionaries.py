@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.perception.inputs.boxes.entry import UNNAMED, Corners, Layout, from_layout
 
 MAX_COORDINATE = 1e9
@@ -151,9 +151,9 @@ def numbers(values: Sequence[Any], where: str) -> Corners:
             raise ValueError
         a, b, c, d = (float(v) for v in values)
     except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{where}: {shortened(str(values), 60)} are not the four numbers of a box") from None
+        raise InputError(f"{where}: {shorten(str(values), 60)} are not the four numbers of a box") from None
     if not all(abs(v) <= MAX_COORDINATE for v in (a, b, c, d)):
-        raise InputError(f"{where}: {shortened(str(values), 60)} are too large for a box")
+        raise InputError(f"{where}: {shorten(str(values), 60)} are too large for a box")
     return a, b, c, d
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Literal, TypeVar
 
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.perception.inputs.source import Source
 
 Corners = tuple[float, float, float, float]
@@ -82,7 +82,7 @@ def picture_of(pictures: Sequence[T], names: Sequence[object], text: BoxText, wh
     if len(matches) != 1:
         raise InputError(
             f"{text.source.name}: this {what} is of {len(pictures)} pictures, none of them called "
-            f"{shortened(text.photo_name, 60)}; keep the annotations of this photo"
+            f"{shorten(text.photo_name, 60)}; keep the annotations of this photo"
         )
     return matches[0]
 

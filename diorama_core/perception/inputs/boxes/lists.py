@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.library.labels import names_a_kind
 from diorama_core.perception.inputs.boxes.dictionaries import (
     FIGURES,
@@ -237,9 +237,9 @@ def _words(rows: Sequence[Mapping[str, Any]], entries: Sequence[BoxEntry]) -> tu
     unused = unused_words(rows)
     known = [k for k in unused if all(names_a_kind(str(r[k])) and str(r[k]).lower() not in FIGURES for r in rows)]
     if len(known) == 1:
-        return [str(r[known[0]]) for r in rows], (f"the names of the boxes were read from '{shortened(known[0], 40)}'",)
+        return [str(r[known[0]]) for r in rows], (f"the names of the boxes were read from '{shorten(known[0], 40)}'",)
     if unused:
-        listed = ", ".join(f"'{shortened(k, 40)}'" for k in unused[:4])
+        listed = ", ".join(f"'{shorten(k, 40)}'" for k in unused[:4])
         return words, (f"the boxes have no class; every entry holds a word under {listed}: call that key 'class'",)
     if any(has_class_number(r) for r in rows):
         return words, ("the classes of the boxes are numbers, and their names are in another file; give names instead",)
@@ -269,4 +269,4 @@ def _rows_of_four(value: object) -> list[list[Any]]:
 
 
 def _keys(row: Mapping[str, Any]) -> str:
-    return shortened("keys: " + ", ".join(map(str, row)), 80) if row else "it is empty"
+    return shorten("keys: " + ", ".join(map(str, row)), 80) if row else "it is empty"

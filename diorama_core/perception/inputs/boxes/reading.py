@@ -7,7 +7,7 @@ from xml.etree.ElementTree import Element
 
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import megabytes, shortened
+from diorama_core.io.bounded import megabytes, shorten
 from diorama_core.library.labels import understand_label
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
 from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile
@@ -87,11 +87,11 @@ def _file(source: Source, photo: DecodedPhoto) -> BoxFile:
 def _what_it_is(document: object) -> str:
     if isinstance(document, list):
         kind = type(document[0]).__name__ if document else "nothing"
-        return f"entry 0 of this JSON list has no box ({shortened(repr(document[0]), 40)})" if kind else ""
+        return f"entry 0 of this JSON list has no box ({shorten(repr(document[0]), 40)})" if kind else ""
     if isinstance(document, dict):
-        return f"this JSON object holds no list of boxes (keys: {shortened(', '.join(map(str, document)), 60)})"
+        return f"this JSON object holds no list of boxes (keys: {shorten(', '.join(map(str, document)), 60)})"
     if isinstance(document, Element):
-        return f"this XML file ({shortened(document.tag, 40)}) is neither Pascal VOC nor CVAT"
+        return f"this XML file ({shorten(document.tag, 40)}) is neither Pascal VOC nor CVAT"
     return "this text is in no form of boxes that is known (YOLO, CSV, KITTI), and is not valid JSON"
 
 

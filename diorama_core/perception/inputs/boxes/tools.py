@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from diorama_core.errors import InputError
-from diorama_core.io.bounded import shortened
+from diorama_core.io.bounded import shorten
 from diorama_core.perception.inputs.boxes.dictionaries import box_of, keys_of, score_of, word_of
 from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile, BoxText, picture_of
 from diorama_core.perception.inputs.boxes.nested import size_in
@@ -151,5 +151,5 @@ def _via_pictures(document: object) -> list[dict[str, Any]]:
 
 
 def _several_pictures_message(text: BoxText, count: int) -> str:
-    shown = shortened(text.photo_name, 60)
+    shown = shorten(text.photo_name, 60)
     return f"{text.source.name}: it is of {count} pictures, none of them called {shown}; keep what is of this photo"
