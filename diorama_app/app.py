@@ -56,7 +56,7 @@ from diorama_app.projects.example import example_project
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session.client import Client
 from diorama_app.session.connected_client import Panel
-from diorama_app.session.preferences import Preferences, remembered
+from diorama_app.session.preferences import Preferences, recall
 from diorama_app.session.session import EditorSession
 from diorama_app.strings import N_, _
 from diorama_app.viewport.client_view import set_theme
@@ -255,7 +255,7 @@ class Editor:
 
     def _recall(self, viser_client: viser.ClientHandle) -> None:
         """Restore the client's stored preferences, unless it has changed them already."""
-        preferences = remembered(viser_client)
+        preferences = recall(viser_client)
 
         def take() -> None:
             client = self.session.clients.get(viser_client.client_id)

@@ -127,7 +127,7 @@ def start(
     host = host or "0.0.0.0"  # an empty one means every address, on a port for each kind
     token = with_token(host, token)
 
-    def refused(client_id: int, line: str) -> None:
+    def refuse(client_id: int, line: str) -> None:
         for workspace in made:
             workspace.editors[0].refuse_upload(client_id, line)
 
@@ -136,7 +136,7 @@ def start(
         port=port,
         label="Diorama",
         visitors=Visitors(host, token, tuple(frame_origins)),
-        refused=refused,
+        refused=refuse,
         pictures=lambda name: made[0].picture(name) if made else _no_picture(),
         projects=_Opening(made),
     )

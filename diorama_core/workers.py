@@ -135,9 +135,9 @@ class _Process(Generic[Item, Result]):
         broken = next((f for f in done if isinstance(f.exception(), BrokenProcessPool)), None)
         for future in done:
             if broken is None or not isinstance(future.exception(), BrokenProcessPool):
-                yield _done(self.running.pop(future), future)
+                yield _finish(self.running.pop(future), future)
         if broken is not None:
-            yield _done(self.running.pop(broken), broken)
+            yield _finish(self.running.pop(broken), broken)
             self._restart()
 
     def _restart(self) -> None:
@@ -164,7 +164,7 @@ def _end_with_parent() -> None:
     threading.Thread(target=wait_for_end, daemon=True, name="end-with-parent").start()
 
 
-def _done(item: Item, future: Future[Result]) -> FinishedItem[Item, Result]:
+def _finish(item: Item, future: Future[Result]) -> FinishedItem[Item, Result]:
     error = future.exception()
     if isinstance(error, BrokenProcessPool):
         return FinishedItem(

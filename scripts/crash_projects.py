@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diorama_app.http_api.job import noted_jobs
+from diorama_app.http_api.job import read_jobs
 from diorama_app.http_api.jobs import JobQueue
 from diorama_app.session.autosave import Autosave
 from diorama_app.session.recovery import Recovery
@@ -189,7 +189,7 @@ def jobs(going: Going, chance: np.random.Generator) -> Figures:
             kills, acknowledged = kills + 1, acknowledged + len(ended.lines)
             known |= dict(map(str.split, ended.lines))
             wrong += _wrong_jobs(root, known)
-            folders = {folder for folder, job in noted_jobs(root).items() if known.get(job.id) != "leaves"}
+            folders = {folder for folder, job in read_jobs(root).items() if known.get(job.id) != "leaves"}
             for folder in set(root.iterdir()) - folders:  # of what was not acknowledged, or was half deleted
                 shutil.rmtree(folder)
                 left += 1
@@ -198,7 +198,7 @@ def jobs(going: Going, chance: np.random.Generator) -> Figures:
 
 def _wrong_jobs(root: Path, known: dict[str, str]) -> int:
     """How many jobs are not what was acknowledged of them."""
-    found = {job.id: job.state for job in noted_jobs(root).values()}
+    found = {job.id: job.state for job in read_jobs(root).values()}
     count = sum((root / job_id).exists() for job_id, state in known.items() if state == "is_gone")
     for job_id in [j for j, state in known.items() if state not in ("leaves", "is_gone")]:
         state = found.get(job_id)

@@ -15,7 +15,7 @@ from pydantic import ValidationError
 
 from diorama_app.agents.api import Api
 from diorama_app.agents.tools import INSTRUCTIONS, Tools
-from diorama_app.http_api.beside import HOST, api_beside, noted_servers
+from diorama_app.http_api.beside import HOST, api_beside, find_servers
 from diorama_app.http_api.server import listen
 from diorama_app.serve import start
 from diorama_core.errors import DioramaError, ProjectError
@@ -94,7 +94,7 @@ def serve_mcp(project: Path | None, projects_dir: Path, http_port: int | None) -
 @contextlib.contextmanager
 def _editor(folder: Path | None, projects_dir: Path) -> Iterator[tuple[Api, str | None]]:
     """An editor that runs already and has the project, or one that is started for the time being."""
-    for server in noted_servers():
+    for server in find_servers():
         api = Api(server.address, server.token)
         rows: Sequence[dict[str, Any]] = api.get("v1/projects")["projects"]
         here = next((row["project"] for row in rows if folder is not None and Path(row["folder"]) == folder), None)

@@ -117,7 +117,7 @@ def _export(a: argparse.Namespace) -> None:
     result: dict[str, Any] = {"file": str(output), "objects": len(written.objects), "planes": len(written.planes)}
     lines = [f"{output}: {number_of(len(written.objects))}, {number_of(len(written.planes), 'plane')}"]
     if a.simulate or a.shake:
-        simulated, notes = _simulated(a, written, output)
+        simulated, notes = _simulate(a, written, output)
         result, lines = result | simulated, lines + notes
     _print(a, result, lines)
 
@@ -154,7 +154,7 @@ def _options(a: argparse.Namespace, room: diorama.Reconstruction) -> ExportOptio
     )
 
 
-def _simulated(a: argparse.Namespace, written: ExportScene, output: Path) -> tuple[dict[str, Any], list[str]]:
+def _simulate(a: argparse.Namespace, written: ExportScene, output: Path) -> tuple[dict[str, Any], list[str]]:
     """What gravity alone, and a floor that shakes, do to what was written: as JSON values, and as lines."""
     from diorama_core.export.stability import EARTHQUAKE, stability
 

@@ -56,7 +56,7 @@ def _import(a: argparse.Namespace) -> None:
     existed = a.output.exists()
     project = Project.create(a.output, name=a.file.stem)
     try:
-        opened, warnings = _imported_into(project, a)
+        opened, warnings = _import_into(project, a)
     except BaseException:
         _clear(project, keep_folder=existed)
         raise
@@ -66,7 +66,7 @@ def _import(a: argparse.Namespace) -> None:
     print(f"{a.output}: {number_of(len(scene.objects))}, {number_of(len(scene.architecture.planes), 'plane')}")
 
 
-def _imported_into(project: Project, a: argparse.Namespace) -> tuple[Opened, tuple[str, ...]]:
+def _import_into(project: Project, a: argparse.Namespace) -> tuple[Opened, tuple[str, ...]]:
     """The file's scene in a new project, read back, and warnings."""
     import diorama_core as diorama
     from diorama_core.importing.apart import import_apart

@@ -156,7 +156,7 @@ def _library_show(a: argparse.Namespace) -> None:
     _check_picture(output)
     if a.watch:
         words = ["library", "show", a.id, "--library", a.library, "--output", str(output)]
-        for _ in changes(_watched(a.library)):  # by another process each time: it reads the design as it is now
+        for _ in changes(_folders(a.library)):  # by another process each time: it reads the design as it is now
             subprocess.run([sys.executable, "-m", "diorama_app.cli", *words])
     from diorama_core.render.views import four_views
 
@@ -166,7 +166,7 @@ def _library_show(a: argparse.Namespace) -> None:
     print(f"{a.id} ({y:.2f} x {x:.2f} x {z:.2f} m) on {output}")
 
 
-def _watched(names: str) -> tuple[Path, ...]:
+def _folders(names: str) -> tuple[Path, ...]:
     """Folders whose files change what a library's shapes look like."""
     from diorama_core.library import furniture
     from diorama_core.library.store import library_folder

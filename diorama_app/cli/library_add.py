@@ -202,10 +202,10 @@ def _info(a: argparse.Namespace) -> None:
     from diorama_core.library.record import shape_to_json
 
     shape = diorama.open_library(a.library).shape(a.id)
-    print(shape_to_json(shape) if a.json else _described(shape))
+    print(shape_to_json(shape) if a.json else _describe(shape))
 
 
-def _described(shape: Shape) -> str:
+def _describe(shape: Shape) -> str:
     depth, width, height = shape.size_m
     turns = {1: "none", 2: "half a turn", 4: "quarter turns", 36: "round"}.get(
         shape.symmetry, f"{360 / shape.symmetry:g} degrees"

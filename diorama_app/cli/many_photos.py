@@ -47,12 +47,12 @@ def build_folder(a: argparse.Namespace, options: BuildOptions) -> None:
 
 def _build_photos_of(folder: Path, output: Path, a: argparse.Namespace, options: BuildOptions) -> None:
     from diorama_app.projects.folder_build import build_photos
-    from diorama_app.projects.folder_home import FOLDER, join_rooms, shared_doors
+    from diorama_app.projects.folder_home import FOLDER, join_rooms, read_doors
     from diorama_app.projects.folder_photos import photos_of
     from diorama_app.projects.folder_report import write_report
     from diorama_core.workers import workers
 
-    doors = shared_doors(folder)
+    doors = read_doors(folder)
     photos, remarks = photos_of(folder)
     for remark in remarks:
         print_note(remark)
@@ -146,7 +146,7 @@ def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
             else read_poses(a.poses, [p.photo for p in photos])
         )
         built = build_posed_photos(photos, poses, options, a.output, progress.part(0.1 if find else 0.0, 1.0))
-    _told(a, built)
+    _print(a, built)
 
 
 def build_sphere(a: argparse.Namespace, files: PhotoFiles, options: BuildOptions) -> None:
@@ -166,10 +166,10 @@ def build_sphere(a: argparse.Namespace, files: PhotoFiles, options: BuildOptions
         raise InputError(f"{a.image.name} is a 360 degree photo; --arrangements and --explain are for other photos")
     with progress_bar() as progress:
         built = build_sphere_photo(files, options, a.output, progress)
-    _told(a, built)
+    _print(a, built)
 
 
-def _told(a: argparse.Namespace, built: PosedBuild) -> None:
+def _print(a: argparse.Namespace, built: PosedBuild) -> None:
     """Print what was built."""
     scene = built.room.scene
     several = sum(len(track.boxes) > 1 for track in built.room.tracks)

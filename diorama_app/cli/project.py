@@ -53,14 +53,14 @@ def add_project(commands: Any) -> None:
 
 
 def _list(a: argparse.Namespace) -> None:
-    from diorama_app.projects.manage import name_of, recent_projects, touched
+    from diorama_app.projects.manage import mtime, name_of, recent_projects
 
     folder = projects_folder(a.projects)
     rows = [
         {
             "project": str(f),
             "name": name_of(f),
-            "changed": time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(touched(f))),
+            "changed": time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(mtime(f))),
         }
         for f in recent_projects(folder)
     ]

@@ -51,7 +51,7 @@ def _review(a: argparse.Namespace) -> None:
         if not a.answer and not a.json:
             if not sys.stdin.isatty():
                 raise InputError("nobody can be asked here; use --json for the questions and --answer for answers")
-            scene = _asked(scene, room.library)
+            scene = _ask(scene, room.library)
         if scene != room.scene:
             replace(room, scene=scene).save(a.project)
     left = questions(scene)
@@ -62,19 +62,19 @@ def _review(a: argparse.Namespace) -> None:
 
 
 def _with_answers(scene: Scene, library: ShapeLibrary, given: list[str]) -> Scene:
-    from diorama_core.review.answers import answered
+    from diorama_core.review.answers import apply_answer
 
     for words in given:
         question, equals, value = words.partition("=")
         if not equals:
             raise InputError(f"--answer {words!r} is no answer; write it as kind:chair_1=armchair")
-        scene = answered(scene, library, question.strip(), value.strip())
+        scene = apply_answer(scene, library, question.strip(), value.strip())
     return scene
 
 
-def _asked(scene: Scene, library: ShapeLibrary) -> Scene:
+def _ask(scene: Scene, library: ShapeLibrary) -> Scene:
     """The scene with everything that the person at the terminal answered."""
-    from diorama_core.review.answers import answered
+    from diorama_core.review.answers import apply_answer
     from diorama_core.review.questions import questions
 
     put_off: set[str] = set()
@@ -89,7 +89,7 @@ def _asked(scene: Scene, library: ShapeLibrary) -> Scene:
             put_off.add(question.id)
             continue
         try:
-            scene = answered(scene, library, question.id, _value(question, reply))
+            scene = apply_answer(scene, library, question.id, _value(question, reply))
         except EditRefused as error:
             print_note(str(error))
     return scene

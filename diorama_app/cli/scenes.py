@@ -80,12 +80,12 @@ def _api_beside() -> Beside | None:
     if any(find_spec(module) is None for module in ("fastapi", "python_multipart", "uvicorn")):
         return None
 
-    def loaded(running: Running, token: str | None) -> AbstractContextManager[object]:
+    def serve_api(running: Running, token: str | None) -> AbstractContextManager[object]:
         from diorama_app.http_api.beside import api_beside  # the page comes first
 
         return api_beside(running, token)
 
-    return loaded
+    return serve_api
 
 
 def add_optimise(commands: Any) -> None:

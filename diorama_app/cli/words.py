@@ -92,7 +92,7 @@ def _edit(a: argparse.Namespace) -> None:
             print("\n".join(f"- {line}" for line in proposed.lines))
             for note in proposed.notes:
                 print_note(note)
-        done = a.yes or (not a.json and _agreed())
+        done = a.yes or (not a.json and _confirm())
         if done:
             replace(room, scene=proposed.scene).save(a.project)
     if a.json:
@@ -101,7 +101,7 @@ def _edit(a: argparse.Namespace) -> None:
         print(f"{a.project}: done" if done else f"{a.project}: nothing was changed")
 
 
-def _agreed() -> bool:
+def _confirm() -> bool:
     if not sys.stdin.isatty():
         raise InputError("the edits were not made, because nobody can be asked here; add --yes to make them")
     return input("Make these edits? [y/N] ").strip().lower() in ("y", "yes")

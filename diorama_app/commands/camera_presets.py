@@ -60,10 +60,10 @@ class Views:
     def follow(self, client: Client) -> None:
         """Call `turned` whenever a person turns this browser's view."""
 
-        async def looked(_: viser.CameraHandle) -> None:
+        async def look(_: viser.CameraHandle) -> None:
             client.post(lambda: self.turned(client), key="turned")
 
-        client.viser_client.camera.on_update(looked)
+        client.viser_client.camera.on_update(look)
 
     def turned(self, client: Client) -> None:
         """Turn the 360 degree photo with the view of who looks around in it."""

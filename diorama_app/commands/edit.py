@@ -174,7 +174,7 @@ def turn_selected(client: Client, by_deg: float) -> None:
 
 
 def _turn(client: Client, ids: tuple[str, ...], turn_rad: float) -> None:
-    def turned(scene: Scene) -> Scene:
+    def turn(scene: Scene) -> Scene:
         for object_id in ids:
             pose = scene.object(object_id).pose
             scene = edits.move(
@@ -183,7 +183,7 @@ def _turn(client: Client, ids: tuple[str, ...], turn_rad: float) -> None:
         return scene
 
     label = _("turn {names}").format(names=names_of(client.session.scene, ids))
-    client.session.edit(label, turned, by=client, merge_key=f"{NUDGE_MERGE} {' '.join(ids)} yaw", by_hand=True)
+    client.session.edit(label, turn, by=client, merge_key=f"{NUDGE_MERGE} {' '.join(ids)} yaw", by_hand=True)
 
 
 def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, 3]) -> None:

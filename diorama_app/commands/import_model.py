@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from diorama_app.commands.insert import start_placing
-from diorama_app.commands.swap import candidate_for, swapped
+from diorama_app.commands.swap import candidate_for, swap_shape
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.strings import N_, _
@@ -32,7 +32,7 @@ def import_model(client: Client, name: str, content: bytes) -> None:
     file_name = Path(name).name or "model.glb"
 
     def work(progress: Progress) -> None:
-        shape_id = _taken_in(user_library, file_name, content, progress)
+        shape_id = _take_in(user_library, file_name, content, progress)
 
         def show() -> None:
             client.toast(_("{file} is in the library.").format(file=file_name), False)
@@ -43,7 +43,7 @@ def import_model(client: Client, name: str, content: bytes) -> None:
     session.jobs.start("import", _("Reading {file}…").format(file=file_name), work)
 
 
-def _taken_in(user_library: UserLibrary, name: str, content: bytes, progress: Progress) -> str:
+def _take_in(user_library: UserLibrary, name: str, content: bytes, progress: Progress) -> str:
     from diorama_core.library.ingest.adding import add_models
     from diorama_core.library.ingest.finding import model_files, slug, sources
     from diorama_core.library.ingest.given import Given
@@ -140,7 +140,7 @@ def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, cat
     what = _(change.name).lower() if fix is not None else _(record.category)
 
     def take(scene: Scene) -> Scene:
-        return swapped(scene, item, candidate_for(session.library, item, record.id, "catalogue"), keep_colour=True)
+        return swap_shape(scene, item, candidate_for(session.library, item, record.id, "catalogue"), keep_colour=True)
 
     try:
         session.edit(_("correct the model ({what})").format(what=what), take, by=client)

@@ -47,7 +47,7 @@ def toggle_favourite(client: Client, shape_id: str) -> None:
     client.change_preferences(favourites=rest if shape_id in before else (shape_id, *rest)[:MAX_FAVOURITES])
 
 
-def _used(client: Client, shape_id: str) -> None:
+def _remember(client: Client, shape_id: str) -> None:
     """Remember that a shape was inserted."""
     rest = (i for i in client.preferences.recent if i != shape_id)
     client.change_preferences(recent=(shape_id, *rest)[:MAX_RECENT])
@@ -65,7 +65,7 @@ def insert_shape(client: Client, shape_id: str) -> None:
         on_it = _insert_on(client, shape, new_id, parent)
         if on_it is not None:
             session.edit(_inserting(shape.category), lambda scene: on_it, by=client, selection=(new_id,))
-            _used(client, shape_id)
+            _remember(client, shape_id)
             return
     room = client.room()
     floor, height = room.architecture.floor, floor_height(room)
@@ -74,7 +74,7 @@ def insert_shape(client: Client, shape_id: str) -> None:
     item = SceneObject(new_id, shape.category, shape.category, shape.id, shape.size_m, pose)
     edge = None if floor is None else Support(new_id, floor.id)
     session.edit(_inserting(shape.category), lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
-    _used(client, shape_id)
+    _remember(client, shape_id)
 
 
 def _insert_on(client: Client, shape: Shape, new_id: str, parent: SceneObject) -> Scene | None:
@@ -106,7 +106,7 @@ def _hang_in_view(client: Client, shape_id: str) -> bool:
     new_id = edits.fresh_id(session.scene, shape.category)
     item, edge = insertion(scene, shape, new_id, hit, 0.0)
     session.edit(_inserting(shape.category), lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
-    _used(client, shape_id)
+    _remember(client, shape_id)
     return True
 
 
@@ -172,7 +172,7 @@ def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, 3], direct
         by=client,
         selection=(new_id,),
     )
-    _used(client, shape_id)
+    _remember(client, shape_id)
 
 
 def _ground_hit(origin: np.ndarray, direction: np.ndarray) -> Hit | None:

@@ -78,12 +78,12 @@ def measure_at(client: Client, doing: Measuring, origin: np.ndarray, direction: 
     points = (*doing.points, (float(point[0]), float(point[1]), float(point[2])))
     points = points[-1:] if len(points) > 2 else points
     client.doing = Measuring(points)
-    length = measured_m(client.doing)
+    length = length_m(client.doing)
     client.view.show_measure(points, "" if length is None else format_length(length, client.preferences.unit))
     client.refresh()
 
 
-def measured_m(doing: object) -> float | None:
+def length_m(doing: object) -> float | None:
     """The length between the two clicked points; None before there are two."""
     if not isinstance(doing, Measuring) or len(doing.points) < 2:
         return None
@@ -92,7 +92,7 @@ def measured_m(doing: object) -> float | None:
 
 def rescale_measured(client: Client, length_true_m: float) -> None:
     """Scale everything so that what was measured has this length."""
-    now = measured_m(client.doing)
+    now = length_m(client.doing)
     if now is None:
         raise EditRefused("click two points in the view first, then type the distance between them")
     measured, shown = (format_length(length, client.preferences.unit) for length in (now, length_true_m))

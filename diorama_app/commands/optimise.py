@@ -100,7 +100,7 @@ def optimise(
         if frames.shown < GLIDE_BELOW:
             _glide(session, start, final, progress)
         asker = None if by is None else by.id
-        session.post(asker, lambda: _arranged(session, final, report, run, by=by, author=author))
+        session.post(asker, lambda: _arrange(session, final, report, run, by=by, author=author))
 
     session.jobs.start("optimise", _("Arranging the layout"), work)
     session.layout_run = run
@@ -212,7 +212,7 @@ def _interpolate_pose(a: Pose, b: Pose, share: float) -> Pose:
 
 
 def _show_step(session: EditorSession, scene: Scene, run: LayoutRun, samples: Samples) -> None:
-    session.viewport.preview(untouched(session.scene, run.start, scene))
+    session.viewport.preview(final_poses(session.scene, run.start, scene))
     now = time.monotonic()
     if now - run.drawn_at < CURVES_EVERY_S:
         return
@@ -223,20 +223,20 @@ def _show_step(session: EditorSession, scene: Scene, run: LayoutRun, samples: Sa
             client.curves.refresh()
 
 
-def _arranged(
+def _arrange(
     session: EditorSession, final: Scene, report: LayoutReport, run: LayoutRun, *, by: Client | None, author: str
 ) -> None:
     current = session.scene
     if current is run.start:
         scene = edits.set_metrics(final, report.after)
     else:
-        scene = edits.set_metrics(edits.place(current, untouched(current, run.start, final)), report.after)
+        scene = edits.set_metrics(edits.place(current, final_poses(current, run.start, final)), report.after)
     run.report, run.final = report, scene
     label = _("arrange the layout") if run.recipe in PUBLISHED else _("tidy up")
     session.commit(label, scene, by=by, author=author)
 
 
-def untouched(current: Scene, start: Scene, final: Scene) -> Mapping[str, Pose]:
+def final_poses(current: Scene, start: Scene, final: Scene) -> Mapping[str, Pose]:
     """The final poses of objects that nobody has edited since the start; locked ones stay where they are."""
     return {
         o.id: o.pose

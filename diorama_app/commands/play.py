@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from jaxtyping import Float
 
-from diorama_app.commands.optimise import untouched
+from diorama_app.commands.optimise import final_poses
 from diorama_app.session.client import Client, Playing
 from diorama_app.strings import _
 from diorama_core.editing.support_changes import reattach
@@ -103,7 +103,7 @@ def _stop(client: Client) -> None:
         client.refresh()
 
 
-def _stayed(before: Pose, after: Pose) -> bool:
+def _is_still(before: Pose, after: Pose) -> bool:
     """Whether an object is where it was, but for how a simulation settles."""
     turn = rotation_vector(after.R_world_object @ before.R_world_object.T)
     return float(np.linalg.norm(after.position - before.position)) < STAYED_M and (
@@ -113,8 +113,8 @@ def _stayed(before: Pose, after: Pose) -> bool:
 
 def _keep(client: Client, start: Scene, final: Scene) -> None:
     session = client.session
-    poses = untouched(session.scene, start, final)
-    moved = {i: p for i, p in poses.items() if not _stayed(start.object(i).pose, p)}
+    poses = final_poses(session.scene, start, final)
+    moved = {i: p for i, p in poses.items() if not _is_still(start.object(i).pose, p)}
     if not moved:
         client.notice(_("Nothing moved."), "good")
         session.refresh()

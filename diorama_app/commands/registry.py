@@ -71,7 +71,7 @@ class CommandTable:
 
 
 def _asker(command: Command, ask: Callable[[Command, int | None], None]) -> Any:
-    async def asked(event: viser.CommandEvent) -> None:
+    async def run(event: viser.CommandEvent) -> None:
         ask(command, event.client_id)
 
-    return asked
+    return run

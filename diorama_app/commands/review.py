@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from diorama_app.commands.glide import glide
-from diorama_app.reconstruction.camera_correction import rescaled_inputs
+from diorama_app.reconstruction.camera_correction import rescale_inputs
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.strings import N_, _
 from diorama_core.artefacts import Inputs
-from diorama_core.review.answers import answered, lengths
+from diorama_core.review.answers import apply_answer, lengths
 from diorama_core.review.questions import NO
 from diorama_core.scene.types import Scene
 
@@ -43,10 +43,10 @@ def answer(session: EditorSession, question_id: str, value: str, *, by: Client |
     if subject == "scale" and session.scene.has_object(object_id):
         now_m, true_m = lengths(session.scene, object_id, value)
         label = _("{label} is {metres:g} m high").format(label=name, metres=true_m)
-        rescaled = rescaled_inputs(session, true_m / now_m)
+        rescaled = rescale_inputs(session, true_m / now_m)
 
     def change(scene: Scene) -> Scene:
-        return answered(scene, session.library, question_id, value)
+        return apply_answer(scene, session.library, question_id, value)
 
     before = session.scene
     session.edit(label, change, by=by, author=author, by_hand=subject in ("front", "supporter"), inputs=rescaled)

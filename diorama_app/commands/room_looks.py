@@ -92,7 +92,7 @@ def surface_under(scene: Scene, origin: Float[np.ndarray, 3], direction: Float[n
     return facing[which].id if which >= 0 else None
 
 
-def chosen_surfaces(client: Client, *, all_walls: bool) -> tuple[str, ...]:
+def surface_ids(client: Client, *, all_walls: bool) -> tuple[str, ...]:
     """The surface that is chosen, or with `all_walls` every wall when it is one.
 
     Raises:
@@ -116,7 +116,7 @@ def finish_surfaces(client: Client, finish: SurfaceFinish | None, *, all_walls: 
         merge: steps with the same key become one.
     """
     session = client.session
-    chosen = chosen_surfaces(client, all_walls=all_walls)
+    chosen = surface_ids(client, all_walls=all_walls)
     names = (
         supporter_name(session.scene, chosen[0])
         if len(chosen) == 1

@@ -45,7 +45,7 @@ def candidate_for(library: ShapeLibrary, item: SceneObject, shape_id: str, mode:
     return Candidate(shape.id, shape.size_m, score, replace(item.pose, scale=scale))
 
 
-def swapped(scene: Scene, item: SceneObject, candidate: Candidate, *, keep_colour: bool) -> Scene:
+def swap_shape(scene: Scene, item: SceneObject, candidate: Candidate, *, keep_colour: bool) -> Scene:
     """The scene with an object's shape replaced, at the same position.
 
     Args:
@@ -74,7 +74,7 @@ def swap(client: Client, object_id: str, shape_id: str) -> None:
     def take(scene: Scene) -> Scene:
         for one in targets:
             candidate = candidate_for(session.library, one, shape_id, preferences.size_mode)
-            scene = swapped(scene, one, candidate, keep_colour=preferences.keep_colour)
+            scene = swap_shape(scene, one, candidate, keep_colour=preferences.keep_colour)
         return scene
 
     session.edit(_("swap {names}").format(names=names_of(session.scene, [t.id for t in targets])), take, by=client)
@@ -89,7 +89,7 @@ def preview_swap(client: Client, object_id: str, shape_id: str) -> None:
     if item.locked or session.jobs.status is not None:
         return
     candidate = candidate_for(session.library, item, shape_id, client.preferences.size_mode)
-    shown = swapped(session.scene, item, candidate, keep_colour=client.preferences.keep_colour)
+    shown = swap_shape(session.scene, item, candidate, keep_colour=client.preferences.keep_colour)
     session.viewport.preview_item(shown.object(object_id))
 
 

@@ -102,11 +102,11 @@ def _object_count(path: Path) -> int:
         about = path.stat()
     except OSError as error:
         raise ProjectError(f"{path} cannot be read ({error.strerror}); build the scene again") from error
-    return _counted(path, about.st_mtime_ns, about.st_size, about.st_ino)
+    return _count(path, about.st_mtime_ns, about.st_size, about.st_ino)
 
 
 @lru_cache(maxsize=MAX_COUNTED)
-def _counted(path: Path, written_ns: int, size: int, inode: int) -> int:
+def _count(path: Path, written_ns: int, size: int, inode: int) -> int:
     """Objects of a scene file as it was written then."""
     return len(read_scene(path).objects)
 
@@ -138,12 +138,12 @@ WORDS = {
 }
 
 
-def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
+def error_docs(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """The errors of an address for the OpenAPI document; those of access are everywhere."""
     return {s: {"model": ErrorAnswer, "description": WORDS[s]} for s in (401, 403, *statuses)}
 
 
-def told(request: Request, error: Exception) -> Response:
+def respond(request: Request, error: Exception) -> Response:
     """An error as its one line, with the status that fits."""
     if isinstance(error, StarletteHTTPException):
         return JSONResponse({"error": clean_text(str(error.detail))}, error.status_code, error.headers)

@@ -94,7 +94,7 @@ def _note(server: NotedServer) -> Path:
     return path
 
 
-def noted_servers() -> tuple[NotedServer, ...]:
+def find_servers() -> tuple[NotedServer, ...]:
     """Servers of this person that answer, the one that was started last first; what others left behind is removed."""
     servers = []
     for path in sorted(_folder().glob("*.json"), key=lambda p: p.stat().st_mtime, reverse=True):

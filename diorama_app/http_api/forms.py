@@ -17,7 +17,7 @@ from diorama_core.io.text import clean_text
 from diorama_core.text.edit_plan import MAX_EDITS, TypedEdit
 
 
-def sent_photo(
+def read_upload(
     photo: Annotated[UploadFile, File(description="JPEG, PNG, WebP, TIFF and others.")],
     boxes: Annotated[
         str | None,
@@ -42,7 +42,7 @@ def sent_photo(
     )
 
 
-PhotoForm = Annotated[Upload, Depends(sent_photo)]
+PhotoForm = Annotated[Upload, Depends(read_upload)]
 
 
 def _four_numbers(text: str) -> tuple[float, float, float, float]:

@@ -63,20 +63,20 @@ def note_job(folder: Path, job: Job) -> None:
     Project(folder).update_info(**{JOB: {k: v for k, v in asdict(job).items() if k != "id"}})
 
 
-def noted_jobs(folder: Path) -> dict[Path, Job]:
+def read_jobs(folder: Path) -> dict[Path, Job]:
     """Jobs that the projects of a folder tell of, by the project's folder; a project that cannot be read is none."""
     jobs: dict[Path, Job] = {}
     for path in sorted(folder.glob("*/project.json")):
         try:
             entry = Project(path.parent).info().get(JOB)
             if isinstance(entry, dict):
-                jobs[path.parent] = _checked(file_label(path.parent.name), entry)
+                jobs[path.parent] = _read(file_label(path.parent.name), entry)
         except (DioramaError, TypeError, ValueError) as error:
             log.warning("%s is not listed: %s", path.parent, error)
     return jobs
 
 
-def _checked(job_id: str, entry: Mapping[str, Any]) -> Job:
+def _read(job_id: str, entry: Mapping[str, Any]) -> Job:
     job = TypeAdapter(Job).validate_python({**entry, "id": job_id})
     return replace(job, state="queued") if job.state == "running" else job
 

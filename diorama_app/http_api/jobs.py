@@ -18,7 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
-from diorama_app.http_api.job import Job, State, build_job, line_of, note_job, noted_jobs
+from diorama_app.http_api.job import Job, State, build_job, line_of, note_job, read_jobs
 from diorama_app.projects.begin import begin_project
 from diorama_core.errors import Cancelled, DioramaError, ProjectError
 from diorama_core.io.bounded import shorten
@@ -66,7 +66,7 @@ class JobQueue:
         self.decoder = LimitedProcess()
         """Where uploads are decoded, one after another: neither a bomb nor a crash there ends the server."""
         self._library, self._library_name = library, library_name
-        noted = noted_jobs(projects_dir)
+        noted = read_jobs(projects_dir)
         self._jobs: dict[str, Job] = {job.id: job for job in noted.values()}
         self._folders = {job.id: folder for folder, job in noted.items()}
         self._waiting = deque(j.id for j in sorted(self._jobs.values(), key=lambda j: j.created) if not j.is_over)
@@ -181,13 +181,13 @@ class JobQueue:
         """
         loop, changed = asyncio.get_running_loop(), asyncio.Event()
 
-        def told() -> None:
+        def notify() -> None:
             with contextlib.suppress(RuntimeError):  # the loop has ended meanwhile
                 loop.call_soon_threadsafe(changed.set)
 
         until = loop.time() + seconds
         with self._changed:
-            self._listeners.add(told)
+            self._listeners.add(notify)
         try:
             while not (job := self.job(job_id)).is_over and not self._closed and (left := until - loop.time()) > 0:
                 changed.clear()
@@ -196,7 +196,7 @@ class JobQueue:
             return job
         finally:
             with self._changed:
-                self._listeners.discard(told)
+                self._listeners.discard(notify)
 
     def cancel(self, job_id: str) -> Job:
         """Stop a job. One that runs stops at its next check.
@@ -285,13 +285,13 @@ class JobQueue:
     def _built(self, job: Job, token: CancelToken) -> Job:
         began = time.perf_counter()
 
-        def reported(event: ProgressEvent) -> None:
+        def report(event: ProgressEvent) -> None:
             self._progress[job.id] = event
 
         state: State = "done"
         error: str | None = None
         try:
-            progress = Progress(reported, token)
+            progress = Progress(report, token)
             progress.check()
             build_job(job, self._folders[job.id], self._library, progress)
         except Cancelled:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from diorama_app.projects.begin import begin_project, keep_given
 from diorama_app.projects.manage import address_of, recent_projects
-from diorama_app.projects.uploads import Upload, decoded
+from diorama_app.projects.uploads import Upload, decode
 from diorama_app.reconstruction.build_job import build
 from diorama_app.reconstruction.text_to_scene import creation
 from diorama_app.serve import Running
@@ -109,7 +109,7 @@ class OpenProjects:
             ProjectError: the project cannot be written.
         """
         first = self.running.session
-        project = begin_project(first.projects_dir, upload.name, decoded(upload, self._decoder), upload.photo)
+        project = begin_project(first.projects_dir, upload.name, decode(upload, self._decoder), upload.photo)
         keep_given(project, upload)
         session = self.session(address_of(project.folder))
         session.ui_thread.ask(lambda: build(session))

@@ -13,7 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from diorama_app.commands import review
 from diorama_app.commands.optimise import optimise
 from diorama_app.http_api import project_answers as answers
-from diorama_app.http_api.answers import FILE, PICTURE, VIEWS, documented, file_answer, format_of, png
+from diorama_app.http_api.answers import FILE, PICTURE, VIEWS, error_docs, file_answer, format_of, png
 from diorama_app.http_api.forms import (
     AUTHOR,
     DescribeRequest,
@@ -39,15 +39,15 @@ from diorama_core.scene.schema import scene_to_json
 MAX_WAIT_S = 60.0
 POLL_S = 0.1
 """How often a job that is waited for is looked at."""
-project_router = APIRouter(prefix="/v1/projects", responses=documented(404, 500))
+project_router = APIRouter(prefix="/v1/projects", responses=error_docs(404, 500))
 
 
-def _opened(request: Request) -> OpenProjects:
+def _projects(request: Request) -> OpenProjects:
     return request.app.state.opened
 
 
 def _session(request: Request, name: str) -> EditorSession:
-    return _opened(request).session(name)
+    return _projects(request).session(name)
 
 
 Session = Annotated[EditorSession, Depends(_session)]
@@ -57,7 +57,7 @@ Session = Annotated[EditorSession, Depends(_session)]
 @project_router.get("", operation_id="list_projects")
 def list_projects(request: Request) -> ProjectList:
     """All projects."""
-    opened = _opened(request)
+    opened = _projects(request)
     here = {e.session.project.folder for e in opened.running.workspace.editors if e.session.project is not None}
     rows = [
         answers.ProjectAnswer(project=address_of(f), title=name_of(f), open=f in here, folder=str(f.resolve()))
@@ -66,30 +66,30 @@ def list_projects(request: Request) -> ProjectList:
     return ProjectList(projects=rows)
 
 
-@project_router.post("", status_code=202, operation_id="begin_project", responses=documented(400, 408, 413, 422, 503))
+@project_router.post("", status_code=202, operation_id="begin_project", responses=error_docs(400, 408, 413, 422, 503))
 def begin_project(
     request: Request, form: PhotoForm, author: Annotated[str, Form(max_length=40)] = AUTHOR
 ) -> answers.SceneAnswer:
     """Send a photo: it becomes a project whose scene is built, in the editor; `job` says how far it is."""
-    opened = _opened(request)
+    opened = _projects(request)
     return _scene_answer(opened, opened.begin(form, author))
 
 
-@project_router.post("/described", status_code=201, operation_id="describe_project", responses=documented(422, 501))
+@project_router.post("/described", status_code=201, operation_id="describe_project", responses=error_docs(422, 501))
 def describe_project(request: Request, body: DescribeRequest) -> answers.SceneAnswer:
     """Describe a room in words: it becomes a project with a scene, at the end of the request."""
-    opened = _opened(request)
+    opened = _projects(request)
     return _scene_answer(opened, opened.describe(body.text, body.author))
 
 
 @project_router.get("/{name}", operation_id="get_project")
 def get_project(request: Request, session: Session) -> answers.SceneAnswer:
     """The open scene: objects, room, version, what is wrong and what is doubtful."""
-    return _scene_answer(_opened(request), session)
+    return _scene_answer(_projects(request), session)
 
 
 def _scene_answer(opened: OpenProjects, session: EditorSession) -> answers.SceneAnswer:
-    def told() -> answers.SceneAnswer:
+    def answer() -> answers.SceneAnswer:
         scene, document = session.scene, session.document
         undo = document.next_undo()
         return answers.SceneAnswer(
@@ -105,10 +105,10 @@ def _scene_answer(opened: OpenProjects, session: EditorSession) -> answers.Scene
             notes=list(session.notes),
         )
 
-    return session.ui_thread.ask(told)
+    return session.ui_thread.ask(answer)
 
 
-@project_router.post("/{name}/edits", operation_id="edit_project", responses=documented(409, 422, 501))
+@project_router.post("/{name}/edits", operation_id="edit_project", responses=error_docs(409, 422, 501))
 def edit_project(session: Session, body: EditRequest) -> EditAnswer:
     """Make edits as one undo step that every browser sees. 409: somebody has changed the scene; look again."""
     done = edit(session, body.version, body.edits or body.words.strip(), body.author)
@@ -125,7 +125,7 @@ def get_questions(session: Session) -> answers.QuestionsAnswer:
     )
 
 
-@project_router.post("/{name}/answers", operation_id="answer_question", responses=documented(409, 422))
+@project_router.post("/{name}/answers", operation_id="answer_question", responses=error_docs(409, 422))
 def answer_question(session: Session, body: ReviewRequest) -> StepAnswer:
     """Answer a question, as one undo step. 409: somebody has changed the scene; ask for the questions again."""
 
@@ -138,14 +138,14 @@ def answer_question(session: Session, body: ReviewRequest) -> StepAnswer:
     return session.ui_thread.ask(answer)
 
 
-@project_router.post("/{name}/undo", operation_id="undo_project", responses=documented(422))
+@project_router.post("/{name}/undo", operation_id="undo_project", responses=error_docs(422))
 def undo_project(session: Session, body: StepRequest) -> StepAnswer:
     """Take back the author's own last change, as long as nobody else has changed the same things since."""
     entry = session.ui_thread.ask(lambda: session.undo(body.author))
     return StepAnswer(version=session.document.version, label=entry.label)
 
 
-@project_router.post("/{name}/redo", operation_id="redo_project", responses=documented(422))
+@project_router.post("/{name}/redo", operation_id="redo_project", responses=error_docs(422))
 def redo_project(session: Session, body: StepRequest) -> StepAnswer:
     """Do again what the author took back last."""
     entry = session.ui_thread.ask(lambda: session.redo(body.author))
@@ -153,7 +153,7 @@ def redo_project(session: Session, body: StepRequest) -> StepAnswer:
 
 
 @project_router.post(
-    "/{name}/optimise", status_code=202, operation_id="optimise_project", responses=documented(409, 422)
+    "/{name}/optimise", status_code=202, operation_id="optimise_project", responses=error_docs(409, 422)
 )
 def optimise_project(session: Session, body: OptimiseRequest) -> answers.JobStatusAnswer:
     """Tidy up: objects rest on their supports and do not overlap. One undo step at its end."""
@@ -170,7 +170,7 @@ def optimise_project(session: Session, body: OptimiseRequest) -> answers.JobStat
     return session.ui_thread.ask(start)
 
 
-@project_router.post("/{name}/build", status_code=202, operation_id="build_project", responses=documented(422))
+@project_router.post("/{name}/build", status_code=202, operation_id="build_project", responses=error_docs(422))
 def build_project(session: Session) -> answers.JobStatusAnswer:
     """Build the scene of the project's photo anew. One undo step at its end."""
 
@@ -191,12 +191,12 @@ async def get_project_job(
     while session.jobs.status is not None and asyncio.get_running_loop().time() < until:
         await asyncio.sleep(POLL_S)
 
-    def told() -> answers.JobStatusAnswer:
+    def answer() -> answers.JobStatusAnswer:
         if session.jobs.status is None:
             session.jobs.wait(MAX_WAIT_S)  # its thread tells how it ended just before it ends
         return session.ui_thread.ask(lambda: answers.job_answer(session))
 
-    return await run_in_threadpool(told)
+    return await run_in_threadpool(answer)
 
 
 @project_router.post("/{name}/job/cancel", operation_id="cancel_project_job")
@@ -245,7 +245,7 @@ def get_project_scene(session: Session) -> Response:
     "/{name}/picture",
     operation_id="get_project_picture",
     response_class=Response,
-    responses={**PICTURE, **documented(422)},
+    responses={**PICTURE, **error_docs(422)},
 )
 async def get_project_picture(
     request: Request,
@@ -265,7 +265,7 @@ async def get_project_picture(
     "/{name}/export/{format_name}",
     operation_id="export_project",
     response_class=Response,
-    responses={**FILE, **documented(422, 501)},
+    responses={**FILE, **error_docs(422, 501)},
 )
 async def export_project(
     request: Request,
@@ -287,7 +287,7 @@ async def watch_project(session: Session) -> AsyncIterator[ServerSentEvent]:
     """Server-sent events: `scene` for the state now and after every change by anybody, `job` while long work runs."""
     loop, changed = asyncio.get_running_loop(), asyncio.Event()
 
-    def told() -> None:
+    def notify() -> None:
         if not loop.is_closed():
             loop.call_soon_threadsafe(changed.set)
 
@@ -297,7 +297,7 @@ async def watch_project(session: Session) -> AsyncIterator[ServerSentEvent]:
             version=session.document.version, label=entry.label, author=entry.author, job=answers.job_answer(session)
         )
 
-    await run_in_threadpool(session.ui_thread.ask, lambda: session.watchers.add(told))
+    await run_in_threadpool(session.ui_thread.ask, lambda: session.watchers.add(notify))
     try:
         version = None
         while True:
@@ -307,4 +307,4 @@ async def watch_project(session: Session) -> AsyncIterator[ServerSentEvent]:
             await changed.wait()
             changed.clear()
     finally:
-        session.ui_thread.post(lambda: session.watchers.discard(told))
+        session.ui_thread.post(lambda: session.watchers.discard(notify))

@@ -21,11 +21,11 @@ from diorama_app.http_api.answers import (
     JobAnswer,
     JobList,
     answer_of,
-    documented,
+    error_docs,
     file_answer,
     format_of,
     png,
-    told,
+    respond,
 )
 from diorama_app.http_api.forms import PhotoForm
 from diorama_app.http_api.jobs import JobQueue, Upload
@@ -46,11 +46,11 @@ otherwise. Every error is `{"error": "one line"}`."""
 MAX_AT_ONCE = 2
 """Scenes that are drawn or exported at a time; others wait, without a thread."""
 MAX_WAIT_S = 60.0
-router = APIRouter(prefix="/v1", responses=documented())
-format_router = APIRouter(prefix="/v1", responses=documented())
+router = APIRouter(prefix="/v1", responses=error_docs())
+format_router = APIRouter(prefix="/v1", responses=error_docs())
 
 
-@router.post("/jobs", status_code=202, operation_id="create_job", responses=documented(400, 408, 413, 422, 429, 503))
+@router.post("/jobs", status_code=202, operation_id="create_job", responses=error_docs(400, 408, 413, 422, 429, 503))
 def create_job(
     request: Request,
     form: PhotoForm,
@@ -59,7 +59,7 @@ def create_job(
 ) -> JobAnswer:
     """Send a photo, with what is known of it, and queue its build."""
     queue = _queue(request)
-    read = sent.decoded(form, queue.decoder)
+    read = sent.decode(form, queue.decoder)
     content: dict[Upload, Any] = {"photo": form.photo, "depth": form.depth, "masks": form.masks}
     given = {kind: data for kind, data in content.items() if data is not None}
     return answer_of(queue, queue.add(form.name, read, given, profile, recipe))
@@ -72,7 +72,7 @@ def list_jobs(request: Request) -> JobList:
     return JobList(jobs=[answer_of(queue, job) for job in queue.jobs()])
 
 
-@router.get("/jobs/{job_id}", operation_id="get_job", responses=documented(404, 422))
+@router.get("/jobs/{job_id}", operation_id="get_job", responses=error_docs(404, 422))
 async def get_job(
     request: Request,
     job_id: str,
@@ -85,7 +85,7 @@ async def get_job(
     return await run_in_threadpool(answer_of, queue, await queue.wait(job_id, wait_s))
 
 
-@router.post("/jobs/{job_id}/cancel", operation_id="cancel_job", responses=documented(404, 409, 422))
+@router.post("/jobs/{job_id}/cancel", operation_id="cancel_job", responses=error_docs(404, 409, 422))
 def cancel_job(request: Request, job_id: str) -> JobAnswer:
     """Stop a job that waits or runs; one that runs stops within seconds. Its project stays."""
     queue = _queue(request)
@@ -97,7 +97,7 @@ def cancel_job(request: Request, job_id: str) -> JobAnswer:
     status_code=204,
     operation_id="delete_job",
     response_class=Response,
-    responses=documented(404, 409, 422),
+    responses=error_docs(404, 409, 422),
 )
 def delete_job(request: Request, job_id: str) -> Response:
     """Delete a job that is over, with its project."""
@@ -105,10 +105,10 @@ def delete_job(request: Request, job_id: str) -> Response:
     return Response(status_code=204)
 
 
-@router.get("/jobs/{job_id}/scene", operation_id="get_scene", responses=documented(404, 422, 500))
+@router.get("/jobs/{job_id}/scene", operation_id="get_scene", responses=error_docs(404, 422, 500))
 def get_scene(request: Request, job_id: str) -> dict[str, Any]:
     """The scene file of a finished job; docs/scene-file.md describes it."""
-    path = _finished(request, job_id) / "scene.json"
+    path = _project(request, job_id) / "scene.json"
     document = read_json(path, ProjectError)
     if not isinstance(document, dict):
         raise ProjectError(f"{path} is no scene file; build the scene again")
@@ -119,7 +119,7 @@ def get_scene(request: Request, job_id: str) -> dict[str, Any]:
     "/jobs/{job_id}/picture",
     operation_id="get_picture",
     response_class=Response,
-    responses={**PICTURE, **documented(404, 422, 500)},
+    responses={**PICTURE, **error_docs(404, 422, 500)},
 )
 async def get_picture(
     request: Request,
@@ -129,7 +129,7 @@ async def get_picture(
     height: Annotated[int, Query(ge=16, le=2048)] = 480,
 ) -> Response:
     """A picture of a finished job's scene."""
-    folder = _finished(request, job_id)
+    folder = _project(request, job_id)
     async with request.app.state.few:
         content = await run_in_threadpool(lambda: png(diorama.load(folder), view, (width, height)))
     return Response(content, media_type="image/png")
@@ -139,7 +139,7 @@ async def get_picture(
     "/jobs/{job_id}/export/{format_name}",
     operation_id="export_scene",
     response_class=Response,
-    responses={**FILE, **documented(404, 422, 500, 501)},
+    responses={**FILE, **error_docs(404, 422, 500, 501)},
 )
 async def export_scene(
     request: Request,
@@ -149,7 +149,7 @@ async def export_scene(
     texture_size: Annotated[int | None, Query(ge=16, le=8192, description="Longest side of pictures.")] = None,
 ) -> Response:
     """A finished job's scene as a file for other programs; `/v1/formats` lists them."""
-    format_, folder = format_of(format_name), _finished(request, job_id)
+    format_, folder = format_of(format_name), _project(request, job_id)
     options = ExportOptions(ceiling=ceiling, max_texture_px=texture_size)
     async with request.app.state.few:
         return await run_in_threadpool(lambda: file_answer(diorama.load(folder), job_id, format_, options))
@@ -182,7 +182,7 @@ def create_app(queue: JobQueue | None, visitors: Visitors, opened: OpenProjects 
     app.include_router(format_router)
     app.add_middleware(Guard, visitors=visitors)
     for kind in (DioramaError, RequestValidationError, StarletteHTTPException):
-        app.add_exception_handler(kind, told)
+        app.add_exception_handler(kind, respond)
     return app
 
 
@@ -200,7 +200,7 @@ def _queue(request: Request) -> JobQueue:
     return request.app.state.queue
 
 
-def _finished(request: Request, job_id: str) -> Path:
+def _project(request: Request, job_id: str) -> Path:
     """The project of a job that is done."""
     queue = _queue(request)
     job = queue.job(job_id)

@@ -65,18 +65,18 @@ class Gestures:
         self._handles = SizeHandles(client, self._resizing, self._end_collisions)
         scene = client.viser_client.scene
 
-        async def clicked(event: viser.SceneClickEvent) -> None:
+        async def click(event: viser.SceneClickEvent) -> None:
             # A click on an object also arrives here, after the object's own event.
             ray = np.array(event.ray_origin), np.array(event.ray_direction)
             on_object = self._last_pick == event.screen_pos
             client.post(lambda: self._clicked(*ray, on_object=on_object))
 
-        async def framed(event: viser.SceneRectSelectEvent) -> None:
+        async def frame(event: viser.SceneRectSelectEvent) -> None:
             low, high = event.screen_min, event.screen_max
             client.post(lambda: self._framed(low, high))
 
-        scene.on_click()(clicked)
-        scene.on_rect_select(modifier="shift")(framed)
+        scene.on_click()(click)
+        scene.on_rect_select(modifier="shift")(frame)
 
     # -- pointing ---------------------------------------------------------------------------------------------
 
@@ -260,11 +260,11 @@ class Gestures:
             position=pose.position,
         )
 
-        async def dragged(event: viser.TransformControlsEvent) -> None:
+        async def drag(event: viser.TransformControlsEvent) -> None:
             wxyz, position, phase = np.array(event.target.wxyz), np.array(event.target.position), event.phase
             self._client.post(lambda: self._turned(phase, wxyz, position), key="gizmo" if phase == "update" else None)
 
-        gizmo.on_update(dragged)
+        gizmo.on_update(drag)
         return gizmo
 
     def _remove(self) -> None:

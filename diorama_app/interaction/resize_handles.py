@@ -97,7 +97,7 @@ class SizeHandles:
             receive_shadow=False,
         )
 
-        async def dragged(event: viser.SceneNodeDragEvent[Any]) -> None:
+        async def drag(event: viser.SceneNodeDragEvent[Any]) -> None:
             phase, inverted = event.phase, event.modifier == "alt"
             grabbed, hand = np.array(event.start_position), np.array(event.end_position)
             self._client.post(
@@ -106,7 +106,7 @@ class SizeHandles:
             )
 
         for modifier_key in (None, "alt"):
-            node.on_drag("left", modifier=modifier_key)(dragged)
+            node.on_drag("left", modifier=modifier_key)(drag)
         return node
 
     def _remove(self) -> None:

@@ -71,11 +71,11 @@ class WallHandle:
             position=_middle(plane),
         )
 
-        async def dragged(event: viser.TransformControlsEvent) -> None:
+        async def drag(event: viser.TransformControlsEvent) -> None:
             position, phase = np.array(event.target.position), event.phase
             self._client.post(lambda: self._pulled(phase, position), key="wall" if phase == "update" else None)
 
-        node.on_update(dragged)
+        node.on_update(drag)
         return node
 
     def _pulled(self, phase: str, position: Any) -> None:

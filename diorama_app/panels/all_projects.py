@@ -65,7 +65,7 @@ class AllProjects:
             f'<option value="{key}" {"selected" if key == self._sort else ""}>{text(_(words))}</option>'
             for key, words in SORTS.items()
         )
-        bin_of = "".join(_binned(place) for place in manage.binned_projects(self._client.session.projects_dir))
+        bin_of = "".join(_bin_row(place) for place in manage.binned_projects(self._client.session.projects_dir))
         bin_of = f"<details><summary>{text(_('Bin'))}</summary>{bin_of}</details>" if bin_of else ""
         title = text(_("All projects"))
         return (
@@ -79,7 +79,7 @@ class AllProjects:
 
     def _tile(self, folder: Path, name: str) -> str:
         address, session = manage.address_of(folder), self._client.session
-        current, written = _is_open(session.project, folder), manage.touched(folder)
+        current, written = _is_open(session.project, folder), manage.mtime(folder)
         picture = session.thumbnails.picture_html(f"{folder} {written}", lambda: project_picture(folder))
         when = time.strftime("%Y-%m-%d, %H:%M", time.localtime(written))
         hidden = "" if self._words.casefold() in name.casefold() else "hidden"
@@ -109,9 +109,9 @@ class AllProjects:
         elif action.do == "unbin":
             self._restore(action.arg)
         elif action.do == "rename":
-            self._rename(_listed(session.projects_dir, action.pair[0]), action.pair[1])
+            self._rename(_folder(session.projects_dir, action.pair[0]), action.pair[1])
         elif action.do in ("open", "copy", "bin"):
-            self._with_listed(action.do, _listed(session.projects_dir, action.arg))
+            self._with_listed(action.do, _folder(session.projects_dir, action.arg))
         session.glances.forget()
         session.refresh_panels()
 
@@ -155,7 +155,7 @@ class AllProjects:
         self._client.session.refresh_panels()
 
 
-def _listed(projects_dir: Path, address: str) -> Path:
+def _folder(projects_dir: Path, address: str) -> Path:
     """The folder of a project that is listed: a page must not reach outside the projects' folder."""
     folder = manage.find_project(projects_dir, address)
     if folder is None:
@@ -167,6 +167,6 @@ def _is_open(project: Project | None, folder: Path) -> bool:
     return project is not None and project.folder.resolve() == folder.resolve()
 
 
-def _binned(place: Path) -> str:
+def _bin_row(place: Path) -> str:
     restore = button(_("Restore"), "unbin", manage.address_of(place))
     return f'<div class="row"><span class="name">{text(manage.name_of(place))}</span>{restore}</div>'

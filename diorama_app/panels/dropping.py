@@ -30,7 +30,7 @@ class DroppedFiles:
         """Take a file of any kind, or an archive of several."""
         client, inputs = self._client, self._client.session.inputs
 
-        def told(dropped: Dropped) -> None:
+        def handle(dropped: Dropped) -> None:
             if len(dropped.readings) > 1:
                 ask_which(client, name, dropped, lambda reading: self._act(name, content, reading))
                 return
@@ -40,7 +40,7 @@ class DroppedFiles:
             self._act(name, content, reading)
 
         size = None if inputs is None else (inputs.photo.width, inputs.photo.height)
-        client.session.reader.recognise(content, name, size, client.id, client.post, told)
+        client.session.reader.recognise(content, name, size, client.id, client.post, handle)
 
     def _act(self, name: str, content: bytes, reading: Reading) -> None:
         client = self._client

@@ -82,11 +82,11 @@ class ExportPanel:
         choices = GUIDES[one.name].choices
         switches = "".join(self._switch(choice) for choice in SWITCHES if choice in choices)
         packing = (
-            _explained(_("Compression"), "compression", COMPRESSIONS, self._compression)
+            _choice(_("Compression"), "compression", COMPRESSIONS, self._compression)
             if "compression" in choices
             else ""
         )
-        lights = _explained(_("Lights"), "lights", LIGHTS, self._lights) if "lights" in choices else ""
+        lights = _choice(_("Lights"), "lights", LIGHTS, self._lights) if "lights" in choices else ""
         pictures = self._texture_field() if "textures" in choices else ""
         fields = pictures + packing + lights
         missing = f'<p class="bad">{text(_(one.missing))}</p>' if one.missing else ""
@@ -155,7 +155,7 @@ def _keeps(one: Format) -> str:
     return _("Keeps {content}").format(content=_(one.keeps))
 
 
-def _explained(label: str, change: str, choices: Mapping[ChoiceName, tuple[str, str]], chosen: ChoiceName) -> str:
+def _choice(label: str, change: str, choices: Mapping[ChoiceName, tuple[str, str]], chosen: ChoiceName) -> str:
     """A list to choose from, and below it what is chosen."""
     below = f'<p class="dim" style="margin:3px 0 0;font-size:11.5px">{text(_(choices[chosen][1]))}</p>'
     return _field(label, change, {one: _(name) for one, (name, hint) in choices.items()}, chosen) + below

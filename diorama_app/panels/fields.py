@@ -23,21 +23,21 @@ GO_COLOUR = (24, 108, 66)
 def on_change(handle: Any, act: Callable[[Any], None]) -> None:
     """Call `act(value)` from the event loop when the user changes a field; not when the program does."""
 
-    async def changed(event: Any) -> None:
+    async def change(event: Any) -> None:
         if event.client_id is not None:
             act(event.target.value)
 
-    handle.on_update(changed)
+    handle.on_update(change)
 
 
 def on_press(handle: Any, act: Callable[[], None]) -> None:
     """Call `act()` from the event loop when the person presses a button."""
 
-    async def pressed(event: Any) -> None:
+    async def press(event: Any) -> None:
         if event.client_id is not None:
             act()
 
-    handle.on_click(pressed)
+    handle.on_click(press)
 
 
 def show_value(handle: Any, value: Any) -> None:
@@ -101,11 +101,11 @@ class UploadField:
             f"<style>div:has(> #file_upload_{text(self.uuid)}) {{ display: none; }}</style>", visible=False
         )
 
-        async def uploaded(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
+        async def upload(event: viser.GuiEvent[viser.GuiUploadButtonHandle]) -> None:
             file = event.target.value
             client.post(lambda: take(clean_text(file.name), file.content))
 
-        self.handle.on_upload(uploaded)
+        self.handle.on_upload(upload)
 
     def show_if(self, visible: bool) -> None:
         """Show or hide the button."""

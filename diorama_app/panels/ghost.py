@@ -81,20 +81,20 @@ def ghost_data(scene: Scene, library: ShapeLibrary, shape: Shape) -> dict[str, A
     hung = resolve(shape.category).category.mount in ("wall", "ceiling")
     surfaces = [
         {
-            "normal": _rounded(place.surface.normal),
+            "normal": _round(place.surface.normal),
             "level": round(float(place.surface.level), 4),
-            "outward": [_rounded(side) for side in place.surface.outward],
-            "offset": _rounded(place.surface.offset),
+            "outward": [_round(side) for side in place.surface.outward],
+            "offset": _round(place.surface.offset),
             "up": place.upward,
             "foot": round(float(place.surface.polygon[:, 2].min()), 4),
         }
         for place in places_of(scene, library)
     ]
-    camera = None if scene.camera is None else _rounded(scene.camera.position[:2])
+    camera = None if scene.camera is None else _round(scene.camera.position[:2])
     door = shape.category == DOOR
-    size = _rounded(shape.size_m)
+    size = _round(shape.size_m)
     return {"node": NODE, "size": size, "hung": hung, "door": door, "camera": camera, "surfaces": surfaces}
 
 
-def _rounded(values: Any) -> list[float]:
+def _round(values: Any) -> list[float]:
     return [round(float(v), 4) for v in values]

@@ -50,9 +50,9 @@ def _ask(
         if words:
             gui.add_html(f"<p>{text(_(words))}.</p>")
         for label, answer in choices:
-            on_press(gui.add_button(label), partial(client.post, partial(_answered, close, then, answer)))
+            on_press(gui.add_button(label), partial(client.post, partial(_answer, close, then, answer)))
 
 
-def _answered(close: Callable[[], None], then: Callable[[Answer], None], answer: Answer) -> None:
+def _answer(close: Callable[[], None], then: Callable[[Answer], None], answer: Answer) -> None:
     close()
     then(answer)

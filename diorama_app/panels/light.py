@@ -27,7 +27,7 @@ SHOWN_EV = 2.0
 """The slider of the exposure goes so far each way."""
 
 
-def _drawn_sliders() -> str:
+def _sliders() -> str:
     return f"""
 <div class="dio-light">
  <div class="dio-daylight">
@@ -76,9 +76,9 @@ class LightPanel:
             + button(_("Daylight"), "day", title=_("Sun and sky at a time of day"), on=settings.hour is not None)
             + "</div>"
         )
-        self._sliders.show(_drawn_sliders())
+        self._sliders.show(_sliders())
         self._lamps.show(_lamps(scene))
-        about = json.dumps(told_light(scene), separators=(",", ":"))
+        about = json.dumps(light_state(scene), separators=(",", ":"))
         sun = self._client.session.viewport.room_light.told or "null"
         script = f"window.__dioLight.told({about}); window.__dioSun.told({sun});"
         if script != self._told:
@@ -108,7 +108,7 @@ class LightPanel:
             lighting.switch_all(client, on=action.arg == "on")
 
 
-def told_light(scene: Scene) -> dict[str, Any]:
+def light_state(scene: Scene) -> dict[str, Any]:
     """What a page needs to draw the sliders and the dial: what is set, and the room with its windows from above."""
     settings = scene.light_settings
     floor = scene.architecture.floor
@@ -118,7 +118,7 @@ def told_light(scene: Scene) -> dict[str, Any]:
         if item.category == "window" and not item.hidden:
             across = 0.5 * item.size_m[1] * item.pose.R_world_object[:2, 1]
             ends = item.pose.position[:2] - across, item.pose.position[:2] + across
-            windows.append([*_rounded(ends[0]), *_rounded(ends[1])])
+            windows.append([*_round(ends[0]), *_round(ends[1])])
     hour = settings.hour
     sun = None if hour is None else sun_direction(hour, settings.north_rad)
     return {
@@ -128,7 +128,7 @@ def told_light(scene: Scene) -> dict[str, Any]:
         "azimuth": None if hour is None else round(sun_azimuth(hour, settings.north_rad), 4),
         "up": None if sun is None else round(float(sun[2]), 4),
         "exposure": settings.exposure_ev,
-        "outline": [_rounded(p) for p in outline],
+        "outline": [_round(p) for p in outline],
         "windows": windows,
     }
 
@@ -156,7 +156,7 @@ def _lamps(scene: Scene) -> str:
     return f'{title}<div class="bar tight">{rows}</div>{every}'
 
 
-def _rounded(point: Any) -> list[float]:
+def _round(point: Any) -> list[float]:
     return [round(float(v), 3) for v in point]
 
 

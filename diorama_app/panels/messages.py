@@ -84,14 +84,14 @@ class Toasts:
             client.view.show_measure((), "")
             client.refresh()
 
-        def offered() -> None:
+        def act() -> None:
             do, self._offered = self._offered, None
             self._html.show("")
             if do is not None:
                 do()
 
         if action.do == "offered":
-            client.post(offered)
+            client.post(act)
         elif action.do == "undo":
             client.post(lambda: client.session.undo(client))
         elif action.do == "stop":

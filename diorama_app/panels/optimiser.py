@@ -126,7 +126,7 @@ class Optimiser:
         self._draw(run)
         labels = {o.id: o.label for o in session.scene.objects}
         ended = run is not None and run.final is not None
-        report = "" if run is None or not ended else _worse(run, labels) + _told(run, session.scene)
+        report = "" if run is None or not ended else _worse(run, labels) + _report(run, session.scene)
         self._result.show(_choice(run) + report if run is not None and ended else "")
         self._report.show("" if run is None else report_html(run))
         self._arrangements.show(self._others() if idle else "")
@@ -270,7 +270,7 @@ def _worse(run: LayoutRun, labels: Mapping[str, str]) -> str:
     return f'<div class="card warn" role="status" style="margin-bottom:6px">{body}{bar}</div>'
 
 
-def _told(run: LayoutRun, scene: Scene) -> str:
+def _report(run: LayoutRun, scene: Scene) -> str:
     """Which sizes changed, and what stayed because people placed it."""
     lines = list(resized_in_words(run.start, scene))
     if run.left:

@@ -64,10 +64,10 @@ class Overlays:
         client.view.photo.show_layer(scene.camera, self._picture(scene.camera, masks=masks, planes=planes))
 
     def _picture(self, camera: Camera, *, masks: bool, planes: bool) -> UInt8[np.ndarray, "h w 4"]:
-        from diorama_app.viewport.overlays import draw_ground, draw_planes, mask_picture, seen_objects
+        from diorama_app.viewport.overlays import draw_ground, draw_planes, mask_picture, visible_objects
 
         session, k = self._client.session, camera.intrinsics
-        items = seen_objects(session.scene, self._outlines.found or ()) if masks else ()
+        items = visible_objects(session.scene, self._outlines.found or ()) if masks else ()
         picture = mask_picture((k.width, k.height), items, self._client.selection)
         if planes:
             draw_planes(picture, session.scene.architecture.planes, camera)

@@ -122,7 +122,7 @@ class OwnModel:
         shape = self._client.session.library.shape(item.shape_id)
         fixes = "".join(button(_(fix.name), "fix", name, title=_(fix.hint)) for name, fix in FIXES.items())
         self._html.show(
-            f'<h4>{text(_("Your model"))}</h4><div class="dim">{text(_guessed(shape))}</div>'
+            f'<h4>{text(_("Your model"))}</h4><div class="dim">{text(_guess(shape))}</div>'
             f'<div class="bar tight">{fixes}</div>'
             '<div style="display:flex;gap:4px;margin-bottom:4px">'
             f'<input data-change="is" aria-label="{text(_("What the model is"))}" value="{text(_(shape.category))}" '
@@ -137,7 +137,7 @@ class OwnModel:
             client.post(lambda: correct_model(client, client.need_selected(), category=action.pair[1]))
 
 
-def _guessed(shape: Shape) -> str:
+def _guess(shape: Shape) -> str:
     """The guesses as a sentence."""
     if shape.guess is None:
         return _("Guessed: {category}.").format(category=_(shape.category))

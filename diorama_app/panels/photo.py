@@ -37,7 +37,7 @@ from diorama_app.reconstruction.text_to_scene import describe_room, how_pictures
 from diorama_app.session.client import Client
 from diorama_app.strings import N_, _
 from diorama_app.viewport.annotation_canvas import Deleted, Selected
-from diorama_app.viewport.mesh_assets import reduced
+from diorama_app.viewport.mesh_assets import reduce
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import InputError, SphericalPhotoError
@@ -115,7 +115,7 @@ class PhotoPanel:
         """Read a photo with what was given for it: they are a project from the moment when they are read."""
         client = self._client
 
-        def done(read: ReadInputs) -> None:
+        def finish(read: ReadInputs) -> None:
             project = begin_project(self._session.projects_dir, upload.name, read, upload.photo)
             keep_given(project, upload)
             given, whole = read.inputs, read.inputs.photo.equirectangular
@@ -130,7 +130,7 @@ class PhotoPanel:
             check_all_round(upload)
             self.begin(replace(upload, sphere=True))
 
-        self._session.reader.read(upload, client.id, client.post, done, ask)
+        self._session.reader.read(upload, client.id, client.post, finish, ask)
         self._announce(upload.name, upload.photo)
 
     def add(self, new: Mapping[Sort, Source]) -> None:
@@ -199,7 +199,7 @@ class PhotoPanel:
         project = session.project
         work.stop_unasked(session)
 
-        def done(read: ReadInputs) -> None:
+        def finish(read: ReadInputs) -> None:
             if session.inputs is not before:
                 raise InputError("the photo or its boxes changed meanwhile; upload the file again")
             keep_given(project, replace(upload, depth=upload.depth if "depth" in new else None, masks=new.get("masks")))
@@ -215,7 +215,7 @@ class PhotoPanel:
                 raise unknown
             ask_depth(client, unknown, lambda chosen: self._read_again(label, new, chosen, turn=turn, bend=bend))
 
-        session.reader.read(upload, client.id, client.post, done, ask)
+        session.reader.read(upload, client.id, client.post, finish, ask)
 
     def _camera_given(self, value: str) -> None:
         def read() -> None:
@@ -345,5 +345,5 @@ def _intrinsics(given: str) -> tuple[float, float, float, float] | None:
 
 def _jpeg_uri(rgb: UInt8[np.ndarray, "h w 3"]) -> str:
     buffer = io.BytesIO()
-    Image.fromarray(reduced(rgb, 480)).save(buffer, "JPEG", quality=80)
+    Image.fromarray(reduce(rgb, 480)).save(buffer, "JPEG", quality=80)
     return "data:image/jpeg;base64," + base64.b64encode(buffer.getvalue()).decode()

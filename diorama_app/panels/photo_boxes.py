@@ -109,7 +109,7 @@ class PhotoBoxes:
             label = plural("mark {count} object", "mark {count} objects", len(accepted))
             self._annotate(label, replace(inputs, boxes=boxes))
             self._client.refresh()
-            self._client.notice(" ".join(_accepted_in_words(boxes, len(proposed) - len(accepted), doubtful)))
+            self._client.notice(" ".join(_outcome(boxes, len(proposed) - len(accepted), doubtful)))
 
     def sure(self, inputs: Inputs) -> tuple[LabelledBox, ...]:
         """Those of the proposals that a build uses though nobody looked at them."""
@@ -259,9 +259,7 @@ def box_list(inputs: Inputs, selected: int | None) -> str:
     return f'<h4>{text(_("Boxes"))}</h4><div role="tree" aria-label="{text(_("Boxes"))}">{"".join(rows)}</div>'
 
 
-def _accepted_in_words(
-    boxes: Sequence[LabelledBox], merged: int, doubtful: Sequence[tuple[int, float]]
-) -> Iterator[str]:
+def _outcome(boxes: Sequence[LabelledBox], merged: int, doubtful: Sequence[tuple[int, float]]) -> Iterator[str]:
     """What became of all proposals, in sentences."""
     yield _("All proposals are accepted.")
     if merged:

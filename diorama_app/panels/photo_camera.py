@@ -8,8 +8,8 @@ import viser
 from diorama_app.commands.camera_presets import Views
 from diorama_app.reconstruction.camera_correction import (
     camera_height_m,
+    check_angles,
     check_fov,
-    checked_angles,
     rebuild_as_found,
     rebuild_with_camera,
     set_camera_height,
@@ -105,7 +105,7 @@ class PhotoCameraPanel:
             return
         values = {**self._figures, **typed}
         check_fov(values["fov"])
-        camera_attitude = checked_angles(values["tilt"], values["roll"])
+        camera_attitude = check_angles(values["tilt"], values["roll"])
         self._typed, self._used = typed, True
         self._client.trial_camera = trial_camera(self._of, values["fov"], camera_attitude)
         self._views.overlay(self._client, 1.0)
@@ -115,7 +115,7 @@ class PhotoCameraPanel:
         typed, known = self._typed, self._figures
         camera_attitude: CameraAttitude | None = None
         if "tilt" in typed or "roll" in typed:
-            camera_attitude = checked_angles(typed.get("tilt", known["tilt"]), typed.get("roll", known["roll"]))
+            camera_attitude = check_angles(typed.get("tilt", known["tilt"]), typed.get("roll", known["roll"]))
         rebuild_with_camera(self._client, typed.get("fov"), camera_attitude)
 
 

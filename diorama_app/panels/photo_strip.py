@@ -16,7 +16,7 @@ from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction.photo_joining import awaits_photo, missing_for_joining, take_out, take_photo
 from diorama_app.session.client import Client
 from diorama_app.strings import N_, _, plural
-from diorama_app.viewport.mesh_assets import reduced
+from diorama_app.viewport.mesh_assets import reduce
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.artefacts import FurtherPhoto
 
@@ -76,7 +76,7 @@ class PhotoStrip:
         known = self._pictures.get(id(rgb))
         if known is None or known[0] is not rgb:
             buffer = io.BytesIO()
-            Image.fromarray(reduced(rgb, TILE_PX)).save(buffer, "JPEG", quality=75)
+            Image.fromarray(reduce(rgb, TILE_PX)).save(buffer, "JPEG", quality=75)
             uri = "data:image/jpeg;base64," + base64.b64encode(buffer.getvalue()).decode()
             if len(self._pictures) >= KEPT:
                 self._pictures.clear()

@@ -83,7 +83,7 @@ class Projects:
     def _row(self, folder: Path) -> str:
         session = self._client.session
         current = session.project is not None and session.project.folder.resolve() == folder.resolve()
-        when = time.strftime("%Y-%m-%d, %H:%M", time.localtime(project_care.touched(folder)))
+        when = time.strftime("%Y-%m-%d, %H:%M", time.localtime(project_care.mtime(folder)))
         name = text(project_care.name_of(folder))
         on = "on" if current else ""
         return (

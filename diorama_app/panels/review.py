@@ -24,7 +24,7 @@ from diorama_core.artefacts import Box
 from diorama_core.errors import EditRefused
 from diorama_core.library.labels import understand_label
 from diorama_core.library.taxonomy import UNKNOWN
-from diorama_core.review.answers import answered, candidate_of
+from diorama_core.review.answers import apply_answer, candidate_of
 from diorama_core.review.questions import LEAST_GAIN, TURNS, YES, Choice, Question, missing, questions
 from diorama_core.scene.types import SceneObject
 
@@ -236,7 +236,7 @@ class Review:
         if subject == "scale" or not session.scene.has_object(object_id) or session.jobs.status is not None:
             session.refresh()
             return
-        shown = answered(session.scene, session.library, question, value)
+        shown = apply_answer(session.scene, session.library, question, value)
         if shown.has_object(object_id):
             session.viewport.preview_item(shown.object(object_id))
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 import viser
 
 from diorama_app.commands.edit import supporter_name
-from diorama_app.commands.measure import measured_m, rescale_measured, stop_measuring
+from diorama_app.commands.measure import length_m, rescale_measured, stop_measuring
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
 from diorama_app.strings import _
@@ -87,7 +87,7 @@ class Tape:
 
     def refresh(self) -> None:
         """Draw the length, and ask for the true one."""
-        length = measured_m(self._client.doing)
+        length = length_m(self._client.doing)
         if length is None:
             self._html.show("")
             return
@@ -103,7 +103,7 @@ class Tape:
     def _act(self, action: Action) -> None:
         client = self._client
 
-        def done() -> None:
+        def finish() -> None:
             stop_measuring(client)
             client.refresh()
 
@@ -111,4 +111,4 @@ class Tape:
             words = action.pair[1]
             client.post(lambda: rescale_measured(client, parse_length(words, client.preferences.unit)))
         elif action.do == "done":
-            client.post(done)
+            client.post(finish)

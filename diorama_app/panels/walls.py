@@ -81,23 +81,23 @@ def what_fades(
     parents = {s.child: s.parent for s in scene.supports}
     hung = []
     for item in scene.objects:
-        wall = planes.get(_supported_by(parents, item.id))
+        wall = planes.get(_root_plane(parents, item.id))
         if wall is not None and wall.role == "wall":
             normal, offset, ghost = _sides(wall)
             hung.append([object_name(item.id), normal, offset, 1.0 if item.id in selection else ghost])
-    photo = None if scene.camera is None else _rounded(scene.camera.position)
+    photo = None if scene.camera is None else _round(scene.camera.position)
     return {"planes": rows, "hung": hung, "photo": photo, "near": PHOTO_NEAR_M, "ms": fade_ms}
 
 
 def _sides(plane: Plane) -> list[Any]:
-    return [_rounded(plane.normal), round(float(plane.offset), 4), GHOST[plane.role]]
+    return [_round(plane.normal), round(float(plane.offset), 4), GHOST[plane.role]]
 
 
-def _rounded(vector: Any) -> list[float]:
+def _round(vector: Any) -> list[float]:
     return [round(float(v), 4) for v in vector]
 
 
-def _supported_by(parents: Mapping[str, str], object_id: str) -> str:
+def _root_plane(parents: Mapping[str, str], object_id: str) -> str:
     """Id of the plane at the root of an object's support chain; empty without support."""
     supported = parents.get(object_id, "")
     while supported in parents:

@@ -80,7 +80,7 @@ class Dropped:
         return f"Left out: {', '.join(self.left_out[:MAX_NAMED])}{more}" if self.left_out else ""
 
 
-def understood(content: bytes, name: str, photo_size: tuple[int, int] | None) -> Dropped:
+def interpret(content: bytes, name: str, photo_size: tuple[int, int] | None) -> Dropped:
     """What a file, or a zip archive of several, is.
 
     Args:
@@ -262,10 +262,10 @@ def _classify_photos(folder: Path, name: str, names: Sequence[str], photo_size: 
         given = tuple((what.sort, n) for n, what in inputs.items())
         return Dropped((Reading("inputs", f"{words} of the open photo", inputs=given),), tuple(out))
     unsure = {n: sorts[n][1] for n in photos if len(sorts[n]) > 1}
-    readings = _photo_readings([_grouped(p, photos, inputs) for p in photos], inputs, poses)
+    readings = _photo_readings([_group(p, photos, inputs) for p in photos], inputs, poses)
     if len(unsure) == len(photos) - 1 == 1:  # a grey picture beside a photo is its depth, or another photo
         (photo,) = set(photos) - set(unsure)
-        readings = (*_photo_readings([_grouped(photo, [photo], inputs | unsure)], inputs | unsure, ""), *readings)
+        readings = (*_photo_readings([_group(photo, [photo], inputs | unsure)], inputs | unsure, ""), *readings)
     used = {n for reading in readings for p in reading.photos for n in (p.file, *(n for _, n in p.beside))}
     out += [Path(n).name for n in inputs if n not in used]
     return Dropped(readings, tuple(out))
@@ -279,7 +279,7 @@ def _alone(path: Path) -> tuple[Recognised, ...]:
     return tuple(dict.fromkeys((*hinted, *readings)))
 
 
-def _grouped(photo: str, photos: Sequence[str], inputs: dict[str, Recognised]) -> DroppedPhoto:
+def _group(photo: str, photos: Sequence[str], inputs: dict[str, Recognised]) -> DroppedPhoto:
     """A photo with the files of its name, or with all where it is the only photo; of a sort the first."""
     stem = Path(photo).stem
     own = [n for n in inputs if len(photos) == 1 or Path(n).stem.split(".")[0] == stem]

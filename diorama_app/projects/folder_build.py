@@ -94,7 +94,7 @@ def build_photo(photo: FolderPhoto, options: BuildOptions, output: Path) -> Phot
     """One photo's project, kept where it is finished."""
     began, project = time.perf_counter(), output / photo.project
     key = photo.key(options)
-    finished = finished_report(project, key)
+    finished = report_of(project, key)
     if finished is not None:
         return PhotoResult(photo.photo, project, finished, kept=True)
     (project / RECORD).unlink(missing_ok=True)
@@ -118,7 +118,7 @@ def build_photo(photo: FolderPhoto, options: BuildOptions, output: Path) -> Phot
     return PhotoResult(photo.photo, project, report, seconds=seconds)
 
 
-def finished_report(project: Path, key: str) -> dict[str, Any] | None:
+def report_of(project: Path, key: str) -> dict[str, Any] | None:
     """What a finished build with this key reported; None where there is none."""
     if not ((project / RECORD).exists() and (project / "scene.json").exists()):
         return None

@@ -48,7 +48,7 @@ def homes_of(folder: Path) -> tuple[Path, ...]:
     return tuple(inside) or (folder,)
 
 
-def shared_doors(folder: Path) -> tuple[SharedDoor, ...]:
+def read_doors(folder: Path) -> tuple[SharedDoor, ...]:
     """The doors that a folder's `home.json` names; none where there is no such file.
 
     Raises:
@@ -87,7 +87,7 @@ def join_rooms(rooms: Mapping[str, Path], doors: Sequence[SharedDoor], output: P
     if unknown:
         raise InputError(f"{FILE}: there is no room {', '.join(unknown)}; the rooms are {', '.join(sorted(rooms))}")
     first = doors[0].rooms[0]
-    project = _begun(Project.open(rooms[first]), output)
+    project = _begin(Project.open(rooms[first]), output)
     ids: dict[str, Mapping[str, str]] = {first: {}}
     with ProjectLock(project.folder, "diorama build"):
         scene, left = Project.open(rooms[first]).load_scene(), list(doors)
@@ -120,7 +120,7 @@ def _door(scene: Scene, word: str) -> str:
     return labelled[0] if len(labelled) == 1 and not scene.has_object(word) else word
 
 
-def _begun(first: Project, output: Path) -> Project:
+def _begin(first: Project, output: Path) -> Project:
     """The home's project with the photo and the pictures of its first room."""
     project = Project.create(output)
     inputs = first.load_inputs()

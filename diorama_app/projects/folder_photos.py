@@ -102,10 +102,10 @@ def photos_of(folder: Path) -> tuple[tuple[FolderPhoto, ...], tuple[str, ...]]:
     alone = sorted(beside - {path for photo in folder_photos for _, path in photo.side_files})
     remarks = tuple(f"{p.name}: there is no photo of this name; it is not used" for p in alone)
     others = [p.name for p in names if p not in beside and p not in photos and p.suffix.lower() not in DATA]
-    return folder_photos, remarks + _left_out(others)
+    return folder_photos, remarks + _remark(others)
 
 
-def _left_out(names: list[str]) -> tuple[str, ...]:
+def _remark(names: list[str]) -> tuple[str, ...]:
     """A remark about files that are no photos."""
     if not names:
         return ()

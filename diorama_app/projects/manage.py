@@ -29,7 +29,7 @@ def recent_projects(projects_dir: Path) -> list[Path]:
         folders = [f for f in projects_dir.iterdir() if not f.name.startswith(".") and _is_listed(f)]
     except OSError:
         return []
-    return sorted(folders, key=touched, reverse=True)
+    return sorted(folders, key=mtime, reverse=True)
 
 
 def _is_listed(folder: Path) -> bool:
@@ -46,16 +46,16 @@ def address_of(folder: Path) -> str:
     return file_label(folder.name)
 
 
-def touched(folder: Path) -> float:
+def mtime(folder: Path) -> float:
     """When the project's scene, or what is said of its photo, was last written."""
-    return max(_written(folder / "scene.json"), _written(folder / "stages" / "inputs.zip"))
+    return max(_mtime(folder / "scene.json"), _mtime(folder / "stages" / "inputs.zip"))
 
 
 def _has_content(project: Project) -> bool:
     return project.has_scene or project.has_photo
 
 
-def _written(path: Path) -> float:
+def _mtime(path: Path) -> float:
     try:
         return path.stat().st_mtime
     except OSError:  # somebody else removed it just now
@@ -139,7 +139,7 @@ def out_of_bin(place: Path, projects_dir: Path) -> Path:
 
 def earlier_versions(project: Project, most: int = 6) -> tuple[tuple[str, str], ...]:
     """(file name, when, in words) of stored earlier scenes, newest first."""
-    return tuple((p.name, time.strftime("%d %b %H:%M", time.localtime(_written(p)))) for p in project.backups()[:most])
+    return tuple((p.name, time.strftime("%d %b %H:%M", time.localtime(_mtime(p)))) for p in project.backups()[:most])
 
 
 def earlier_scene(project: Project, name: str) -> Scene:

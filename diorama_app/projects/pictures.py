@@ -8,7 +8,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from diorama_app.projects.manage import touched
+from diorama_app.projects.manage import mtime
 from diorama_core.errors import DioramaError, ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_picture
@@ -29,9 +29,9 @@ def project_picture(folder: Path) -> bytes | None:
     """
     name = hashlib.sha256(str(folder.resolve()).encode()).hexdigest()[:24]
     cached = default_cache_dir() / "projects" / f"{name}.png"
-    if cached.exists() and cached.stat().st_mtime > touched(folder):
+    if cached.exists() and cached.stat().st_mtime > mtime(folder):
         return cached.read_bytes()
-    image = _drawn(folder)
+    image = _draw(folder)
     if image is None:
         return None
     buffer = io.BytesIO()
@@ -40,7 +40,7 @@ def project_picture(folder: Path) -> bytes | None:
     return buffer.getvalue()
 
 
-def _drawn(folder: Path) -> Image.Image | None:
+def _draw(folder: Path) -> Image.Image | None:
     from diorama_core.api import load, render  # the renderer takes a second to load; pages without pictures do without
 
     project = Project.open(folder)

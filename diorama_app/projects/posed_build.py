@@ -90,14 +90,12 @@ def build_posed_photos(
         Cancelled: on request.
     """
     library = diorama.open_library(options.library)
-    pairs, notes = _paired(photos, poses)
+    pairs, notes = _pair(photos, poses)
     read: list[_Row] = []
     for photo, posed in pairs:
         inputs, warnings = _inputs(photo)
         notes += [f"{photo.photo.name}: {line}" for line in warnings]
-        read.append(
-            (photo.photo.name, photo.photo.read_bytes, _posed(photo, inputs, posed, stored=poses.stored_pixels))
-        )
+        read.append((photo.photo.name, photo.photo.read_bytes, _pose(photo, inputs, posed, stored=poses.stored_pixels)))
     read.sort(key=lambda row: (-len(row[2].inputs.boxes), row[0]))
 
     def choose(inputs: Inputs) -> Stages:
@@ -169,7 +167,7 @@ def _png(rgb: UInt8[np.ndarray, "h w 3"]) -> bytes:
     return buffer.getvalue()
 
 
-def _paired(photos: Sequence[FolderPhoto], poses: Poses) -> tuple[list[tuple[FolderPhoto, PosedPhoto]], list[str]]:
+def _pair(photos: Sequence[FolderPhoto], poses: Poses) -> tuple[list[tuple[FolderPhoto, PosedPhoto]], list[str]]:
     """Photos with their cameras, by name, or by the name without its ending; and a line for those without."""
     by_name = {Path(p.name).name: p for p in poses.photos}
     by_stem = {Path(p.name).stem: p for p in poses.photos}
@@ -191,7 +189,7 @@ def _inputs(photo: FolderPhoto) -> tuple[Inputs, tuple[str, ...]]:
     return read.inputs, read.warnings
 
 
-def _posed(photo: FolderPhoto, inputs: Inputs, posed: PosedPhoto, *, stored: bool) -> PosedInputs:
+def _pose(photo: FolderPhoto, inputs: Inputs, posed: PosedPhoto, *, stored: bool) -> PosedInputs:
     """A photo with its camera, which is turned with it where it is the camera of the picture as it is stored."""
     width, height = inputs.photo.width, inputs.photo.height
     quarters, k, lens = quarters_of(photo.photo), posed.camera.intrinsics, posed.lens

@@ -50,7 +50,7 @@ def upload_again(
     return Upload(
         given.get("photo") or _png(photo.rgb[::-1, ::-1] if photo.half_turned else photo.rgb),
         photo.name,
-        depth=new.get("depth") or _given_depth(project),
+        depth=new.get("depth") or _depth(project),
         boxes=new.get("boxes") or (boxes_json(before.boxes, photo) if before.boxes else None),
         masks=new.get("masks", given.get("masks")),
         depth_scale=reading.per_metre,
@@ -75,13 +75,13 @@ def with_depth(new: Mapping[Sort, Source], project: Project | None) -> dict[Sort
     confidence = fields.pop("confidence", None)
     if confidence is None:
         return fields
-    depth = fields.get("depth") or (None if project is None else _given_depth(project))
+    depth = fields.get("depth") or (None if project is None else _depth(project))
     if depth is None:
         raise InputError(f"{confidence.name}: this is the confidence of a depth map; add the depth map, too")
     return {**fields, "depth": replace(depth, companions=(confidence,))}
 
 
-def _given_depth(project: Project) -> Source | None:
+def _depth(project: Project) -> Source | None:
     given = project.uploads()
     if "depth" not in given:
         return None

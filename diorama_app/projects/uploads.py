@@ -38,7 +38,7 @@ class Upload:
         return replace(self, depth_scale=answer.per_metre, depth_kind=answer.kind)
 
 
-def decoded(upload: Upload, process: LimitedProcess) -> ReadInputs:
+def decode(upload: Upload, process: LimitedProcess) -> ReadInputs:
     """The checked inputs of an upload.
 
     Args:

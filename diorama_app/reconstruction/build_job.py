@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from diorama_app.reconstruction.networks import can_find_furniture
-from diorama_app.session.project_contents import shown_notes
+from diorama_app.session.project_contents import limit_notes
 from diorama_app.session.session import BUILDING, EditorSession
 from diorama_app.session.textures import Textures
 from diorama_app.strings import N_, _, plural
@@ -65,7 +65,7 @@ class NewScene:
         """
         scene = built.scene if again is None else again.scene
         textures = dict(built.textures) if again is None else {**built.textures, **again.textures}
-        return cls(scene, textures, inputs, shown_notes([*warnings, *built.notes]), built.reasons, again)
+        return cls(scene, textures, inputs, limit_notes([*warnings, *built.notes]), built.reasons, again)
 
 
 def ready_to_build(inputs: Inputs | None) -> bool:
@@ -158,7 +158,7 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
         session.autosave.flush()
         joined = [p for p in others if p.camera is not None]
         alone = 1.0 / (1 + len(joined))
-        with _noted(project):
+        with _note(project):
             warnings = project.info().get("warnings", ())
             part = progress.part(0.0, alone)
             built = build_project(project, inputs, session.offered, warnings=warnings, progress=part, save_scene=False)
@@ -199,7 +199,7 @@ def build_whole_room(session: EditorSession, sphere: Inputs, title: str = "") ->
 
         session.autosave.flush()
         layout = recipe("feasible", library, depth_measured=True)
-        with _noted(project):
+        with _note(project):
             built = build_sphere(
                 sphere.photo, sphere.boxes, library, lambda given: stages_for("auto", given, library), layout, progress
             )
@@ -220,7 +220,7 @@ def _show_whole_room(
         session.notice_all(_("The scene was changed while the room was built, so it stays as it is. Build it again."))
         return
     session.add_textures(dict(built.room.textures))
-    session.notes = shown_notes(built.room.notes)
+    session.notes = limit_notes(built.room.notes)
     main, further = built.views[0], built.further_photos(sphere)
     known = {Path(n).stem for n in built.names} | {p.name for p in further}
     others = [replace(p, camera=None, seen=()) for p in session.further_photos if p.name not in known]
@@ -235,7 +235,7 @@ def _show_whole_room(
         further=(*further, *others),
     )
     session.view.show_whole_room()
-    session.notice_all(counted(built.room.scene), "good")
+    session.notice_all(summary(built.room.scene), "good")
 
 
 def _with_others(
@@ -268,7 +268,7 @@ def _with_others(
 
 
 @contextlib.contextmanager
-def _noted(project: Project) -> Iterator[None]:
+def _note(project: Project) -> Iterator[None]:
     """While it lasts, the project's file says that its scene is built."""
     project.update_info(**{BUILDING: time.strftime("%Y-%m-%dT%H:%M:%S")})
     try:
@@ -283,7 +283,7 @@ def forget_build(project: Project) -> None:
         project.update_info(**{BUILDING: None})
 
 
-def counted(scene: Scene) -> str:
+def summary(scene: Scene) -> str:
     """Message about a scene that was built: its number of objects."""
     return plural(*BUILT, len(scene.objects))
 
@@ -322,7 +322,7 @@ def show_built(
     session.saving.inputs_are_saved(inputs)
     session.commit(label, made.scene, inputs=inputs, further=further if made.again is not None else None)
     session.view.show_whole_room()
-    message = message or counted(made.scene)
+    message = message or summary(made.scene)
     if made.again is not None and made.again.left_out:
         names = ", ".join(made.again.left_out)
         message += " " + _("Not in the new scene, to be added again: {names}.").format(names=names)

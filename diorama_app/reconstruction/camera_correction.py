@@ -83,11 +83,11 @@ def rescale_room(client: Client, label: str, now_m: float, true_m: float) -> Non
         now_m: its length in the scene.
         true_m: its true length.
     """
-    rescaled = rescaled_inputs(client.session, true_m / now_m)
+    rescaled = rescale_inputs(client.session, true_m / now_m)
     client.session.edit(label, lambda s: rescale_to_length(s, now_m, true_m), by=client, inputs=rescaled)
 
 
-def rescaled_inputs(session: EditorSession, factor: float) -> Inputs | None:
+def rescale_inputs(session: EditorSession, factor: float) -> Inputs | None:
     """What is said of the photo once everything is larger by a factor, so that later builds are; None without one."""
     height, inputs = camera_height_m(session.scene), session.document.inputs
     return None if height is None or inputs is None else replace(inputs, camera_height_m=height * factor)
@@ -105,7 +105,7 @@ def check_fov(fov_deg: float) -> None:
         raise InputError(message.format(fov=fov_deg, least=MIN_FOV_DEG, most=MAX_FOV_DEG))
 
 
-def checked_angles(tilt_deg: float, roll_deg: float) -> CameraAttitude:
+def check_angles(tilt_deg: float, roll_deg: float) -> CameraAttitude:
     """Camera attitude; raises `InputError` when it is not plausible."""
     if abs(tilt_deg) > MAX_TILT_DEG or abs(roll_deg) > MAX_ROLL_DEG:
         message = _(IMPOSSIBLE_ANGLES).format(

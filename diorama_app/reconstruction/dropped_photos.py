@@ -12,7 +12,7 @@ from diorama_app.projects.begin import begin_project, fresh_folder, keep_given
 from diorama_app.projects.dropped import MAX_BYTES, DroppedPhoto, Reading
 from diorama_app.projects.dropped_files import files_of, upload_of
 from diorama_app.projects.folder_photos import FolderPhoto
-from diorama_app.projects.uploads import Upload, decoded
+from diorama_app.projects.uploads import Upload, decode
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_core.errors import DioramaError, InputError
@@ -44,7 +44,7 @@ def begin_each(client: Client, name: str, content: bytes, reading: Reading) -> N
             for number, photo in enumerate(reading.photos):
                 progress.report(number / len(reading.photos), _("Reading {name}").format(name=Path(photo.file).name))
                 try:
-                    made.append(_begun(session.projects_dir, photo, files, process))
+                    made.append(_begin(session.projects_dir, photo, files, process))
                 except DioramaError as error:
                     failed.append(str(error))
         finally:
@@ -58,9 +58,9 @@ def begin_each(client: Client, name: str, content: bytes, reading: Reading) -> N
     client.close_dialog()
 
 
-def _begun(projects_dir: Path, photo: DroppedPhoto, files: Mapping[str, bytes], process: LimitedProcess) -> Project:
+def _begin(projects_dir: Path, photo: DroppedPhoto, files: Mapping[str, bytes], process: LimitedProcess) -> Project:
     upload = upload_of(photo, files)
-    project = begin_project(projects_dir, upload.name, decoded(upload, process), upload.photo)
+    project = begin_project(projects_dir, upload.name, decode(upload, process), upload.photo)
     keep_given(project, upload)
     return project
 
@@ -108,7 +108,7 @@ def _check_photos(reading: Reading, files: Mapping[str, bytes]) -> None:
     process = LimitedProcess()
     try:
         for photo in reading.photos:
-            decoded(upload_of(photo, files), process)
+            decode(upload_of(photo, files), process)
     finally:
         process.close()
 

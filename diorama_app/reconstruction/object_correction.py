@@ -33,12 +33,12 @@ def add_from_photo(client: Client, box: Box, label: str) -> None:
         return insert(scene, result, session.library)
 
     step = _("insert {label} from the photo").format(label=label)
-    _reconstruct(client, None, _labelled(box, label), new_id, step, put, select_new=True)
+    _reconstruct(client, None, _label(box, label), new_id, step, put, select_new=True)
 
 
 def rename_class(client: Client, object_id: str, label: str) -> None:
     """Change an object's category: retrieves matching shapes for its box and uses the best at the same place."""
-    item = _seen(client, object_id)
+    item = _find(client, object_id)
     words = label.strip()
     if not words:
         raise EditRefused("type a category, for example armchair")
@@ -48,14 +48,14 @@ def rename_class(client: Client, object_id: str, label: str) -> None:
 
     assert item.box_px is not None
     step = _("change {label} to {words}").format(label=item.label, words=words)
-    _reconstruct(client, item.box_px, _labelled(item.box_px, words), object_id, step, put)
+    _reconstruct(client, item.box_px, _label(item.box_px, words), object_id, step, put)
 
 
 def redraw_box(client: Client, object_id: str, box: Box) -> None:
     """Change an object's box in the photo: segments, retrieves and poses it again."""
     item = client.session.scene.object(object_id)
-    now, label = _labelled(box, item.label), _("reconstruct {label}").format(label=item.label)
-    _reconstruct(client, item.box_px, now, object_id, label, _replaced(client, object_id))
+    now, label = _label(box, item.label), _("reconstruct {label}").format(label=item.label)
+    _reconstruct(client, item.box_px, now, object_id, label, _replace(client, object_id))
 
 
 def use_outline(client: Client, object_id: str, outline: MaskDraft) -> None:
@@ -63,14 +63,14 @@ def use_outline(client: Client, object_id: str, outline: MaskDraft) -> None:
     item = client.session.scene.object(object_id)
     if not outline.mask.any():
         raise EditRefused("the outline is empty; click the object first")
-    box = _labelled(outline.bounds, item.label)
+    box = _label(outline.bounds, item.label)
     label = _("change the outline of {label}").format(label=item.label)
-    _reconstruct(client, item.box_px, box, object_id, label, _replaced(client, object_id), drawn=outline.mask)
+    _reconstruct(client, item.box_px, box, object_id, label, _replace(client, object_id), drawn=outline.mask)
 
 
 def start_outline(client: Client, object_id: str) -> MaskDraft:
     """The present outline of an object: as it was given, or as far as its box tells."""
-    item, inputs = _seen(client, object_id), _inputs(client)
+    item, inputs = _find(client, object_id), _inputs(client)
     from diorama_core.editing.outline import MaskDraft
     from diorama_core.perception.masks import EmbeddedMasks
 
@@ -125,11 +125,11 @@ def _reconstruct(
     session.jobs.start("outline", _("Reconstructing {label}").format(label=box.label), work)
 
 
-def _replaced(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]:
+def _replace(client: Client, object_id: str) -> Callable[[Scene, Found], Scene]:
     return lambda scene, result: replace_object(scene, object_id, result, client.session.library)
 
 
-def _labelled(box: Box, label: str) -> LabelledBox:
+def _label(box: Box, label: str) -> LabelledBox:
     return LabelledBox(box, understand_label(label).category.name, label)
 
 
@@ -140,7 +140,7 @@ def _inputs(client: Client) -> Inputs:
     return inputs
 
 
-def _seen(client: Client, object_id: str) -> SceneObject:
+def _find(client: Client, object_id: str) -> SceneObject:
     item = client.session.scene.object(object_id)
     if item.box_px is None:
         message = _("{label} was not found in the photo; draw a box around it in the Photo tab instead")

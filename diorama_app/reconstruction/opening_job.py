@@ -49,7 +49,7 @@ def open_file(client: Client, name: str, content: bytes) -> None:
             shapes = Path(folder) / "shapes"
             opened = _read(session, Path(folder) / file_name, shapes, content, progress.part(0.0, 0.9))
             progress.report(0.9, "saving the project")
-            project = _saved(session, file_name, opened, shapes)
+            project = _save(session, file_name, opened, shapes)
         client.post(lambda: _show(client, project, file_name))
 
     session.jobs.start("import", _("Opening {file}").format(file=file_name), work)
@@ -84,7 +84,7 @@ def _read(session: EditorSession, path: Path, shapes: Path, content: bytes, prog
     return read_apart(path, shapes, frozenset(shape.id for shape in shared.shapes()), progress)
 
 
-def _saved(session: EditorSession, file_name: str, opened: Opened, shapes: Path) -> Project:
+def _save(session: EditorSession, file_name: str, opened: Opened, shapes: Path) -> Project:
     """A new project with the scene and its shapes; none is left behind when it cannot be saved."""
     stem = Path(file_name).stem
     with new_project(session.projects_dir, stem, name=stem, library=session.library) as project:

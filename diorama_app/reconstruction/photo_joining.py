@@ -112,7 +112,7 @@ def join_photo(client: Client) -> None:
 
     def work(progress: Progress) -> None:
         session.autosave.flush()
-        added = _joined(scene, inputs, photos, photo, project, client, progress)
+        added = _join(scene, inputs, photos, photo, project, client, progress)
         note_placed(project, added.scene)
         client.post(lambda: _show(client, project, scene, photo, added))
 
@@ -161,7 +161,7 @@ def _show_first(client: Client, project: Project, before: Scene, inputs: Inputs,
     session.notice_all(f"{opened.changes[-1]}.", "good")
 
 
-def _joined(
+def _join(
     scene: Scene,
     inputs: Inputs,
     photos: Sequence[FurtherPhoto],

@@ -204,7 +204,7 @@ class Suggestions:
             return None
         if self._clickable is None:
             self._clickable = clickable(own_recogniser(), self.photo, self._everyday())
-        box = clicked_box(unmarked(self._clickable, x, y, marked), x, y)
+        box = clicked_box(drop_marked(self._clickable, x, y, marked), x, y)
         if box is None:
             return None
         name = self._likeliest(box, marked)
@@ -216,7 +216,7 @@ class Suggestions:
         return self._ranked(boxes)[-1][0]
 
 
-def unmarked(detections: Detections, x: float, y: float, marked: Sequence[Box]) -> Detections:
+def drop_marked(detections: Detections, x: float, y: float, marked: Sequence[Box]) -> Detections:
     """The boxes that a click at (x, y) may mean beside those that are marked there: of smaller objects on these.
 
     Args:

@@ -63,7 +63,7 @@ def export(client: Client, format_name: str, options: ExportOptions) -> None:
                 provenance=info,
                 progress=progress.part(0.0, 0.95),
             )
-            file_name, content = packed(Path(folder), f"{stem}-{chosen.name}.zip")
+            file_name, content = pack(Path(folder), f"{stem}-{chosen.name}.zip")
         hand_over(client, file_name, content, progress)
 
     session.jobs.start("export", _("Exporting {title}").format(title=_(chosen.title)), work)
@@ -93,7 +93,7 @@ def download_suffix(chosen: Format) -> str:
     return ".zip" if ".zip" in chosen.suffixes else chosen.suffixes[0]
 
 
-def packed(folder: Path, zip_name: str) -> tuple[str, bytes]:
+def pack(folder: Path, zip_name: str) -> tuple[str, bytes]:
     """What was written into a folder as one file: that file, or a zip of all of them.
 
     Returns:

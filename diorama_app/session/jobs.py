@@ -142,7 +142,7 @@ class Jobs:
         return self._status is None
 
     def _report(self, event: ProgressEvent) -> None:
-        def told(status: JobStatus) -> JobStatus:
+        def update(status: JobStatus) -> JobStatus:
             if status.cancelling:
                 return status
             found = (*status.found, event.found) if event.found else status.found
@@ -150,7 +150,7 @@ class Jobs:
             drawn = (*status.drawn, *event.drawn)
             return replace(status, fraction=event.fraction, message=message, found=found, drawn=drawn)
 
-        self._change(told)
+        self._change(update)
 
     def _change(self, changed: Callable[[JobStatus], JobStatus]) -> None:
         """Change the running job's status, if one still runs: one that just ended must not come back."""

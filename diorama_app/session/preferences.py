@@ -89,7 +89,7 @@ def remember(viser_client: viser.ClientHandle, preferences: Preferences) -> None
     viser_client.local_storage.set_item(KEY, preferences_text(preferences))
 
 
-def remembered(viser_client: viser.ClientHandle) -> Preferences:
+def recall(viser_client: viser.ClientHandle) -> Preferences:
     """The preferences stored in the browser. Waits for the answer: not for viser's event loop or the UI thread."""
     try:
         return read_preferences(viser_client.local_storage.get_item(KEY, timeout=ANSWER_WITHIN_S))

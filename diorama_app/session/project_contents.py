@@ -54,10 +54,10 @@ def read_project(project: Project) -> ProjectContents:
 def build_notes(project: Project) -> tuple[str, ...]:
     """What the project's build had to say, each line once and of bounded length."""
     notes = project.info().get("notes", [])
-    return shown_notes(notes if isinstance(notes, list) else [])
+    return limit_notes(notes if isinstance(notes, list) else [])
 
 
-def shown_notes(notes: Sequence[object]) -> tuple[str, ...]:
+def limit_notes(notes: Sequence[object]) -> tuple[str, ...]:
     """Notes as they are shown: each line once and of bounded length, and not too many."""
     return tuple(dict.fromkeys(shorten(str(note), MAX_NOTE_LENGTH) for note in notes[:MAX_NOTES]))
 

@@ -8,8 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import Any
 
-from diorama_app.projects.dropped import Dropped, understood
-from diorama_app.projects.uploads import Upload, decoded
+from diorama_app.projects.dropped import Dropped, interpret
+from diorama_app.projects.uploads import Upload, decode
 from diorama_core.errors import EditRefused, SphericalPhotoError
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.inputs import ReadInputs
@@ -102,7 +102,7 @@ class Reader:
         ask: Callable[[AmbiguousDepthError | SphericalPhotoError], None] | None,
     ) -> None:
         try:
-            read = decoded(upload, self._process)
+            read = decode(upload, self._process)
             post(lambda: then(read))
         except (AmbiguousDepthError, SphericalPhotoError) as error:
             post(_raising(error) if ask is None else partial(ask, error))
@@ -119,7 +119,7 @@ class Reader:
         then: Callable[[Dropped], None],
     ) -> None:
         try:
-            readings = self._process.call(file[1], understood, *file)
+            readings = self._process.call(file[1], interpret, *file)
             post(lambda: then(readings))
         except Exception as error:  # as above
             post(_raising(error))

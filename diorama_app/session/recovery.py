@@ -75,7 +75,7 @@ class Recovery:
 
     def note(self, project: Project, scene: Scene) -> bool:
         """Remember a change before it is saved; False when it cannot be kept here."""
-        path = self._folder / f"{_place(project)}-{self._session}-{_saved_digest(project)}.json"
+        path = self._folder / f"{_place(project)}-{self._session}-{_scene_digest(project)}.json"
         try:
             write_document(path, scene_to_json(scene).encode(), scene_from_json, ProjectError)
         except Exception as error:  # whatever it is, the thread that saves goes on
@@ -98,7 +98,7 @@ class Recovery:
 
     def left_behind(self, project: Project) -> Unsaved | None:
         """The newest change of an earlier session that the project's own file does not have."""
-        saved = _saved_digest(project)
+        saved = _scene_digest(project)
         candidates = [u for u in self._unsaved_of_others(project) if u.is_settled and u.follows(saved)]
         newest = max(candidates, key=lambda u: u.at, default=None)
         return None if newest is None or _digest(newest.path) == saved else newest
@@ -108,7 +108,7 @@ class Recovery:
 
         Only for who has the project's lock: another's unsaved changes are being saved.
         """
-        saved = _saved_digest(project)
+        saved = _scene_digest(project)
         for unsaved in self._unsaved_of_others(project):
             if unsaved.is_settled and not unsaved.follows(saved):
                 unsaved.discard()
@@ -132,7 +132,7 @@ def _place(project: Project) -> str:
     return hashlib.sha256(os.fsencode(project.folder.resolve())).hexdigest()[:_DIGITS]
 
 
-def _saved_digest(project: Project) -> str:
+def _scene_digest(project: Project) -> str:
     return _digest(project.scene_path)
 
 

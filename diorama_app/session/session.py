@@ -230,10 +230,10 @@ class EditorSession(SharedDocument):
     def _follow_shape(self, client: ConnectedClient, viser_client: viser.ClientHandle) -> None:
         """What is framed in a browser stays in view when panels or the window change the view's shape."""
 
-        async def looked(_: viser.CameraHandle) -> None:
+        async def look(_: viser.CameraHandle) -> None:
             client.post(client.view.camera.frame_again, key="frame")
 
-        viser_client.camera.on_update(looked)
+        viser_client.camera.on_update(look)
 
     def left(self, viser_client: viser.ClientHandle) -> None:
         """A browser went away."""

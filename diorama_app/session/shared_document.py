@@ -9,7 +9,7 @@ from functools import partial
 from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.document import Document, IsMine
 from diorama_app.session.project_saving import ProjectSaving
-from diorama_app.session.textures import Textures, refitted
+from diorama_app.session.textures import Textures, refit
 from diorama_app.strings import _
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.editing.hand_placed import mark_by_hand
@@ -83,7 +83,7 @@ class SharedDocument(ABC):
             scene = change(self.scene)
             scene = mark_by_hand(self.scene, scene) if by_hand else scene
             check_limits(scene, self.scene)
-            scene, made = refitted(self.scene, scene, self.textures)
+            scene, made = refit(self.scene, scene, self.textures)
             self.add_textures(made)
         except DioramaError:
             self.refresh(by)  # fields and gizmo go back to what the document says

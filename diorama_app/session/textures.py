@@ -13,7 +13,7 @@ Textures = Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
 """Pictures by their file names."""
 
 
-def refitted(before: Scene, after: Scene, textures: Textures) -> tuple[Scene, Textures]:
+def refit(before: Scene, after: Scene, textures: Textures) -> tuple[Scene, Textures]:
     """The edited scene and its new pictures.
 
     Those of resized planes are cut and continued, not stretched; those of finishes are made."""

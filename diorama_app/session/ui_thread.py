@@ -110,13 +110,13 @@ class UiThread:
         """
         answer: Future[T] = Future()
 
-        def answered() -> None:
+        def answer_task() -> None:
             try:
                 answer.set_result(task())
             except BaseException as error:  # raised again by whoever waits for it
                 answer.set_exception(error)
 
-        self.post(answered)
+        self.post(answer_task)
         try:
             return answer.result(MAX_ANSWER_S)
         except TimeoutError as error:

@@ -46,7 +46,7 @@ def _metres(words: str, unit: Unit) -> float:
         match = _PART.match(rest)
         if match is None:
             raise InputError(_(NOT_A_LENGTH).format(words=words[:30].strip()))
-        name = (match.group(2) or "").lower() or _implied(unit, previous)
+        name = (match.group(2) or "").lower() or _infer(unit, previous)
         total += _number(match.group(1)) * METRES_PER[name]
         previous, rest = name, rest[match.end() :].strip()
     return total
@@ -86,7 +86,7 @@ def format_size(width: float, depth: float, height: float, unit: Unit) -> str:
     return f"{width:.2f}×{depth:.2f}×{height:.2f}"
 
 
-def _implied(unit: Unit, previous: str) -> str:
+def _infer(unit: Unit, previous: str) -> str:
     if previous in ("'", "ft"):
         return "in"
     return "ft" if unit == "ft-in" else unit

@@ -70,16 +70,14 @@ def N_(text: str) -> str:
 
 def script_texts(script: str) -> list[str]:
     """The texts in a script of the page."""
-    return [_joined(match) for match in SCRIPT_TEXT.finditer(script)]
+    return [_join(match) for match in SCRIPT_TEXT.finditer(script)]
 
 
-def translated_script(script: str) -> str:
+def translate_script(script: str) -> str:
     """A script with each `_("...")` replaced by the text in the language of the page."""
     # "<\\/" is "</" to a script, and does not end it to the page that holds it.
-    return SCRIPT_TEXT.sub(
-        lambda match: json.dumps(_(_joined(match)), ensure_ascii=False).replace("</", r"<\/"), script
-    )
+    return SCRIPT_TEXT.sub(lambda match: json.dumps(_(_join(match)), ensure_ascii=False).replace("</", r"<\/"), script)
 
 
-def _joined(match: re.Match[str]) -> str:
+def _join(match: re.Match[str]) -> str:
     return "".join(json.loads(piece) for piece in re.findall(_QUOTED, match[1]))

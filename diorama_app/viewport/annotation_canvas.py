@@ -18,7 +18,7 @@ from jaxtyping import Bool, UInt8
 from PIL import Image
 
 from diorama_app.strings import N_, _
-from diorama_app.viewport.mesh_assets import reduced
+from diorama_app.viewport.mesh_assets import reduce
 from diorama_app.web.html import Action, LiveHtml, run_once
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.progress import Segments
@@ -164,7 +164,7 @@ class AnnotationCanvas:
         height, width = photo.shape[:2]
         self._size = width, height
         about = {
-            "url": _uri(Image.fromarray(reduced(photo, MAX_SIDE_PX)), "JPEG", quality=JPEG_QUALITY),
+            "url": _uri(Image.fromarray(reduce(photo, MAX_SIDE_PX)), "JPEG", quality=JPEG_QUALITY),
             "size": [width, height],
             "mode": mode,
             "hint": _(HINTS[mode]),

@@ -21,7 +21,7 @@ import numpy as np
 import viser
 from jaxtyping import Float
 
-from diorama_app.strings import _, translated_script
+from diorama_app.strings import _, translate_script
 from diorama_app.viewport.camera import DEFAULT_FOV_RAD, NARROW_FOV_RAD, fitting_fov, room_view, side_view
 from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.room_light import RoomLightView
@@ -56,7 +56,7 @@ def write_html(scene: ExportScene, path: Path, progress: Progress = SILENT) -> N
     """
     with tempfile.TemporaryDirectory() as folder:
         model = Path(folder) / "scene.glb"
-        write_gathered(_seen_from_outside(scene), model, progress.part(0.0, 0.5))
+        write_gathered(_cutaway(scene), model, progress.part(0.0, 0.5))
         content = model.read_bytes()
     progress.report(0.5, "packing the viewer")
     page = _page(content, scene)
@@ -64,7 +64,7 @@ def write_html(scene: ExportScene, path: Path, progress: Progress = SILENT) -> N
     write_whole(Path(path), page.encode())
 
 
-def _seen_from_outside(scene: ExportScene) -> ExportScene:
+def _cutaway(scene: ExportScene) -> ExportScene:
     """The scene with the inner faces of its planes only, so that one looks into the room from every side.
 
     It is lit by the viewer, as in the editor.
@@ -75,7 +75,7 @@ def _seen_from_outside(scene: ExportScene) -> ExportScene:
 
 
 def _page(glb: bytes, gathered: ExportScene) -> str:
-    views = {_(name): [_told(gathered, name, aspect) for aspect in ASPECTS] for name in _names(gathered.scene)}
+    views = {_(name): [_view_json(gathered, name, aspect) for aspect in ASPECTS] for name in _names(gathered.scene)}
     with _quiet_server() as server:
         server.scene.set_up_direction("+z")
         server.scene.world_axes.visible = False
@@ -93,7 +93,7 @@ def _page(glb: bytes, gathered: ExportScene) -> str:
         "ASPECTS": json.dumps(ASPECTS),
         "WALK_PLAN": "null" if walk is None else walk.json,
     }
-    scripts = [translated_script((STATIC / name).read_text(encoding="utf-8")) for name in ("walk.js", "viewer.html")]
+    scripts = [translate_script((STATIC / name).read_text(encoding="utf-8")) for name in ("walk.js", "viewer.html")]
     replacements["WALKING"] = scripts[0]
     over = re.sub("|".join(replacements), lambda match: replacements[match[0]], scripts[1])
     return page.replace("<head>", f"<head>{NOTICE}", 1).replace("</head>", f"{over}</head>", 1)
@@ -116,7 +116,7 @@ def _names(scene: Scene) -> tuple[str, ...]:
     return ("Photo", "Room", "Top") if scene.camera is not None else ("Room", "Top")
 
 
-def _told(gathered: ExportScene, name: str, aspect: float) -> list[list[float] | float]:
+def _view_json(gathered: ExportScene, name: str, aspect: float) -> list[list[float] | float]:
     """A view as the page is told it: eye, point, field of view."""
     eye, target, fov_rad = _view(gathered.scene, name, aspect)
     return [[round(float(v), 4) for v in eye], [round(float(v), 4) for v in target], round(fov_rad, 4)]

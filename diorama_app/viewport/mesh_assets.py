@@ -74,16 +74,16 @@ class ShapeBytes:
         most = self._max_triangles
         shown = {m.texture: pictures[m.texture] for m in materials if m.texture is not None and m.texture in pictures}
 
-        def made() -> bytes:
+        def make() -> bytes:
             unchanged = colour is None and finish is None and not materials and scale == EVEN and not open_share
             if unchanged:
                 data = self._library.glb(shape_id)
             else:
                 parts = stretch_parts(open_parts(self._library, shape_id, open_share, scale), scale)
-                data = _painted_glb(parts, colour, finish, materials, shown)
+                data = _paint_glb(parts, colour, finish, materials, shown)
             return data if most is None else simplify_glb(data, most)
 
-        return self._cached.get((shape_id, colour, finish, materials, scale, open_share, frozenset(shown), most), made)
+        return self._cached.get((shape_id, colour, finish, materials, scale, open_share, frozenset(shown), most), make)
 
     def can_open(self, shape_id: str) -> bool:
         """Whether a shape has doors, drawers or lids."""
@@ -125,7 +125,7 @@ class ShapeBytes:
         return self._main_colours[shape_id]
 
 
-def _painted_glb(
+def _paint_glb(
     parts: trimesh.Scene,
     colour: Colour | None,
     finish: Finish | None,
@@ -134,12 +134,12 @@ def _painted_glb(
 ) -> bytes:
     shown = parts if colour is None and finish is None else repaint(parts, colour, finish)
     if materials:
-        reduced_pictures = {name: reduced(picture, MAX_PICTURE_PX) for name, picture in pictures.items()}
+        reduced_pictures = {name: reduce(picture, MAX_PICTURE_PX) for name, picture in pictures.items()}
         shown = with_photo_materials(shown, materials, reduced_pictures)
     return bytes(shown.export(file_type="glb"))
 
 
-def reduced(picture: UInt8[np.ndarray, "h w 3"], longest: int) -> UInt8[np.ndarray, "h2 w2 3"]:
+def reduce(picture: UInt8[np.ndarray, "h w 3"], longest: int) -> UInt8[np.ndarray, "h2 w2 3"]:
     """The picture with its longer side at most `longest` pixels."""
     image = Image.fromarray(picture)
     image.thumbnail((longest, longest), Image.Resampling.LANCZOS)

@@ -37,7 +37,7 @@ class Seen:
     colour: Colour
 
 
-def seen_objects(scene: Scene, detected: Sequence[DetectedObject]) -> tuple[Seen, ...]:
+def visible_objects(scene: Scene, detected: Sequence[DetectedObject]) -> tuple[Seen, ...]:
     """The scene's visible objects that were found in the photo, with the outlines that still hold."""
     by_id = {obj.id: obj for obj in detected}
     return tuple(

@@ -10,7 +10,7 @@ import numpy as np
 import viser
 from jaxtyping import UInt8
 
-from diorama_app.viewport.mesh_assets import reduced
+from diorama_app.viewport.mesh_assets import reduce
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.scene.types import Camera
 
@@ -83,17 +83,17 @@ class PhotoOverlay:
             thickness=1.5,
             thickness_units="screen",
             color=(70, 78, 92),
-            image=None if shown.photo is None else reduced(shown.photo, HOVERED_PX),
+            image=None if shown.photo is None else reduce(shown.photo, HOVERED_PX),
             wxyz=quaternion_wxyz(camera.T_world_camera[:3, :3]),
             position=camera.position,
             cast_shadow=False,
             receive_shadow=False,
         )
 
-        async def clicked(event: viser.SceneNodePointerEvent[Any]) -> None:
+        async def click(event: viser.SceneNodePointerEvent[Any]) -> None:
             shown.on_click()
 
-        handle.on_click(clicked)
+        handle.on_click(click)
         return handle
 
     def _show_pyramids(self) -> None:
@@ -113,7 +113,7 @@ class PhotoOverlay:
             self._backdrop.remove()
             self._backdrop = None
         if camera is not None and photo is not None:
-            self._backdrop = self._add_picture("/photo_backdrop", camera, reduced(photo, 1280), depth_m)
+            self._backdrop = self._add_picture("/photo_backdrop", camera, reduce(photo, 1280), depth_m)
 
     def show_overlay(self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None, opacity: float) -> None:
         """The photo, half transparent, in front of the model; none at opacity 0.
@@ -128,7 +128,7 @@ class PhotoOverlay:
             self._overlay = None
         self.opacity = 0.0
         if camera is not None and photo is not None and opacity > 0.0:
-            small = reduced(photo, 800)
+            small = reduce(photo, 800)
             self.opacity = opacity
             alpha = np.full((*small.shape[:2], 1), round(255 * opacity), dtype=np.uint8)
             self._overlay = self._add_picture(

@@ -19,7 +19,7 @@ from PIL import Image, ImageDraw, ImageFilter
 from trimesh.visual.material import PBRMaterial
 
 from diorama_app.viewport.decorations import remove_quietly
-from diorama_app.viewport.mesh_assets import NO_PICTURES, ShapeBytes, plane_glb, plane_triangles, reduced
+from diorama_app.viewport.mesh_assets import NO_PICTURES, ShapeBytes, plane_glb, plane_triangles, reduce
 from diorama_app.viewport.room_light import RoomLightView
 from diorama_core.geometry.openings import with_openings
 from diorama_core.geometry.rotations import quaternion_wxyz
@@ -207,7 +207,7 @@ class Viewport:
         name = self._fresh_name("/room")
         if texture is not None:
             return self._server.scene.add_glb(
-                name, plane_glb(plane, reduced(texture, 1024)), cast_shadow=False, receive_shadow=self._shadow_on_planes
+                name, plane_glb(plane, reduce(texture, 1024)), cast_shadow=False, receive_shadow=self._shadow_on_planes
             )
         return self._server.scene.add_mesh_simple(
             name,
@@ -247,18 +247,18 @@ class Viewport:
         shown.appearance = _appearance(item)
         object_id = item.id
 
-        async def clicked(event: viser.SceneNodePointerEvent[Any]) -> None:
+        async def click(event: viser.SceneNodePointerEvent[Any]) -> None:
             self._pick(object_id, event)
 
-        mesh.on_click(clicked)
+        mesh.on_click(click)
         for modifier in ("shift", "cmd/ctrl"):
-            mesh.on_click(modifier=modifier)(clicked)
+            mesh.on_click(modifier=modifier)(click)
 
-        async def dragged(event: viser.SceneNodeDragEvent[Any]) -> None:
+        async def drag(event: viser.SceneNodeDragEvent[Any]) -> None:
             self._drag(object_id, event)
 
         for modifier_key in (None, "alt"):
-            mesh.on_drag("left", modifier=modifier_key)(dragged)
+            mesh.on_drag("left", modifier=modifier_key)(drag)
         if old is not None:
             self._later(lambda: remove_quietly(old))
 

@@ -127,7 +127,7 @@ class LiveHtml:
             events = " ".join(f'on{name}="{send}{script}"' for name, script in handlers.items())
             self._frame = f'<div class="dio" {events}>%s</div>'
 
-            async def clicked(event: viser.GuiEvent[Any]) -> None:
+            async def receive(event: viser.GuiEvent[Any]) -> None:
                 if event.client_id is None:
                     return
                 for number, action in _read_actions(event.target.value):
@@ -135,7 +135,7 @@ class LiveHtml:
                         self._done = number
                         on_action(action)
 
-            field.on_update(clicked)
+            field.on_update(receive)
         self._handle = gui.add_html("", visible=False)
 
     def show(self, body: str, *, again: bool = False) -> None:

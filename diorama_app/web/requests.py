@@ -98,11 +98,11 @@ def request_check(
         if refusal is not None:
             return connection.respond(http.HTTPStatus.FORBIDDEN, f"Refused: {refusal}.\n")
         try:
-            return served(connection, request)
+            return serve(connection, request)
         except (ValueError, LookupError, OSError):  # an address that names no file: a null character, half a name
             return connection.respond(http.HTTPStatus.BAD_REQUEST, "This request is invalid.\n")
 
-    def served(connection: ServerConnection, request: Request) -> Response | Awaitable[Response] | None:
+    def serve(connection: ServerConnection, request: Request) -> Response | Awaitable[Response] | None:
         name = urlsplit(request.path).path.removeprefix(f"/{PICTURES}")
         if pictures is not None and f"/{PICTURES}{name}" == urlsplit(request.path).path:
             return picture(connection, pictures(name))
@@ -110,7 +110,7 @@ def request_check(
         first = projects.first() if projects is not None and is_page and project_of(request.path) is None else None
         response: Response | None = None
         if first is not None:
-            response = redirected(request, first)
+            response = redirect(request, first)
         elif handler is not None and (response := handler(connection, request)) is not None:
             prepend_scripts(response)
         if response is not None:
@@ -126,7 +126,7 @@ def project_of(address: str) -> str | None:
     return parse_qs(urlsplit(address).query).get(PROJECT, [None])[0]
 
 
-def redirected(request: Request, project: str) -> Response:
+def redirect(request: Request, project: str) -> Response:
     """Sends a page whose address names no project to the address that does."""
     query = [*parse_qsl(urlsplit(request.path).query, keep_blank_values=True), (PROJECT, project)]
     headers = Headers({"Location": f"/?{urlencode(query)}", "Content-Length": "0", "Cache-Control": "no-store"})
@@ -134,7 +134,7 @@ def redirected(request: Request, project: str) -> Response:
     return Response(http.HTTPStatus.FOUND, "Found", headers)
 
 
-def paced(handler: Callable[[ServerConnection], Awaitable[None]]) -> Callable[[ServerConnection], Awaitable[None]]:
+def pace(handler: Callable[[ServerConnection], Awaitable[None]]) -> Callable[[ServerConnection], Awaitable[None]]:
     """The handler, with messages taken no faster than anybody can work: the rest waits at its sender."""
 
     async def handle(connection: ServerConnection) -> None:

@@ -16,7 +16,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
 from websockets.http11 import Response
 
-from diorama_app.strings import language, translated_script
+from diorama_app.strings import language, translate_script
 
 TOKEN_COOKIE = "diorama_token"
 SECURITY_HEADERS = {
@@ -103,7 +103,7 @@ def with_head(page: bytes) -> bytes:
     """The page with our title, styles and scripts before everything that viser brings."""
     styles = b"".join(b"\n<style>" + style.read_bytes() + b"</style>" for style in STYLES)
     scripts = b"".join(
-        b"\n<script>" + translated_script(script.read_text("utf-8")).encode() + b"</script>" for script in SCRIPTS
+        b"\n<script>" + translate_script(script.read_text("utf-8")).encode() + b"</script>" for script in SCRIPTS
     )
     page = re.sub(
         rb"<title>.*?</title>", lambda match: b"<title>" + TITLE + b"</title>", page, count=1, flags=re.DOTALL

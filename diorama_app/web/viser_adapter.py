@@ -37,7 +37,7 @@ from diorama_app.web.requests import (
     HttpHandler,
     Pictures,
     ProjectServers,
-    paced,
+    pace,
     project_of,
     request_check,
 )
@@ -82,7 +82,7 @@ class _Buffer(_infra.AsyncMessageBuffer):  # type: ignore[misc]  # viser's modul
     flush_event: asyncio.Event = field(default_factory=_LoopEvent)
 
 
-def packed(value: Any) -> bytes:
+def pack(value: Any) -> bytes:
     """What viser sends, as bytes; a half character anywhere in it becomes a sign instead of ending the connection."""
     try:
         return msgspec.msgpack.encode(value)
@@ -90,7 +90,7 @@ def packed(value: Any) -> bytes:
         return msgspec.msgpack.encode(clean_strings(value))
 
 
-_infra.msgspec = SimpleNamespace(msgpack=SimpleNamespace(encode=packed))  # all that this module of viser's takes of it
+_infra.msgspec = SimpleNamespace(msgpack=SimpleNamespace(encode=pack))  # all that this module of viser's takes of it
 _infra.AsyncMessageBuffer = _Buffer  # each connection makes its own by this name
 rich.get_console().quiet = True  # viser prints that it stopped, from a thread: nobody else here prints through it
 
@@ -121,7 +121,7 @@ def create_server(
         InputError: the port is taken or the address is not this machine's.
     """
     _check_port(host, port)
-    with _guarded_serve(visitors, pictures, projects), contextlib.redirect_stdout(io.StringIO()):
+    with _guard_serve(visitors, pictures, projects), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=False)
     _secure(server, _Uploads(), refused)
     return server
@@ -143,7 +143,7 @@ def create_server_without_port(
         handlers.append(handler)
         return _NoPort()
 
-    with _replaced_serve(serve), contextlib.redirect_stdout(io.StringIO()):
+    with _replace_serve(serve), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host="127.0.0.1", port=0, label=label, verbose=False)
     _HANDLERS[server] = handlers[0]
     _secure(server, _UPLOADS[front], refused)
@@ -184,7 +184,7 @@ class _NoPort:
 
 
 @contextlib.contextmanager
-def _replaced_serve(serve: Callable[..., Any]) -> Iterator[None]:
+def _replace_serve(serve: Callable[..., Any]) -> Iterator[None]:
     """While it lasts, viser starts its websocket servers by `serve`.
 
     viser 1.1.1 calls `websockets.asyncio.server.serve` by this name when a server is made, and has no option for a
@@ -239,7 +239,7 @@ def _check_port(host: str, port: int) -> None:
 
 
 @contextlib.contextmanager
-def _guarded_serve(visitors: Visitors, pictures: Pictures | None, projects: ProjectServers | None) -> Iterator[None]:
+def _guard_serve(visitors: Visitors, pictures: Pictures | None, projects: ProjectServers | None) -> Iterator[None]:
     """While it lasts, websocket servers are started with the visitors' check in front."""
     original = websockets.asyncio.server.serve
 
@@ -247,14 +247,14 @@ def _guarded_serve(visitors: Visitors, pictures: Pictures | None, projects: Proj
     def serve(handler: Any, *args: Any, process_request: HttpHandler | None = None, **kwargs: Any) -> Any:
         kwargs["max_size"] = MAX_MESSAGE_BYTES
         check = request_check(process_request, visitors, pictures, projects)
-        routed = handler if projects is None else _routed(handler, projects)
-        return original(paced(routed), *args, process_request=check, **kwargs)
+        routed = handler if projects is None else _route(handler, projects)
+        return original(pace(routed), *args, process_request=check, **kwargs)
 
-    with _replaced_serve(serve):
+    with _replace_serve(serve):
         yield
 
 
-def _routed(handler: ConnectionHandler, projects: ProjectServers) -> ConnectionHandler:
+def _route(handler: ConnectionHandler, projects: ProjectServers) -> ConnectionHandler:
     """A handler that gives a connection to the server of the project in its address, or else to `handler`."""
 
     async def handle(connection: ServerConnection) -> None:
@@ -316,7 +316,7 @@ class _Uploads:
             if refused is not None:
                 refused(int(client_id), _("{file} was refused: {reason}").format(file=name[:100], reason=_(reason)))
 
-        def capped_start(client_id: Any, message: _messages.FileTransferStartUpload) -> None:
+        def cap_start(client_id: Any, message: _messages.FileTransferStartUpload) -> None:
             with self._lock:
                 reason = why_refused(message, (server, client_id), self._running())
                 if reason is None:
@@ -325,7 +325,7 @@ class _Uploads:
             if reason is not None:
                 refuse(client_id, message, str(message.filename), reason)
 
-        def capped_part(client_id: Any, message: _messages.FileTransferPart) -> None:
+        def cap_part(client_id: Any, message: _messages.FileTransferPart) -> None:
             with self._lock:
                 state = gui._current_file_upload_states.get(message.transfer_uuid)
                 if state is None or state["client_id"] != client_id:
@@ -340,8 +340,8 @@ class _Uploads:
                 refuse(client_id, message, state["filename"], "more data arrived than announced; try again")
 
         for kind, old, new in (
-            (_messages.FileTransferStartUpload, start, capped_start),
-            (_messages.FileTransferPart, part, capped_part),
+            (_messages.FileTransferStartUpload, start, cap_start),
+            (_messages.FileTransferPart, part, cap_part),
         ):
             handlers[kind] = [new if known == old else known for known in handlers[kind]]
 

@@ -113,9 +113,9 @@ def build(
     warnings = (*read.warnings, *straightened)
     for warning in warnings:
         warn(warning)
-    opened, name = _opened(library)
+    opened, name = _open(library)
     choose = _choice(inputs, opened, profile, recipe, stages, networks)
-    return _built(inputs, warnings, opened, name, choose, output, progress or Progress())
+    return _build(inputs, warnings, opened, name, choose, output, progress or Progress())
 
 
 def _set_camera_height(inputs: Inputs, height_m: float | None) -> Inputs:
@@ -158,18 +158,18 @@ def build_from_text(
     from diorama_core.text.pictures import ImageSettings, picture_of
 
     progress = progress or Progress()
-    opened, name = _opened(library)
+    opened, name = _open(library)
     endpoint = ImageSettings.from_environment()
     if endpoint is None:
-        return _composed(prompt, opened, name, seed, output, progress, warn)
+        return _compose(prompt, opened, name, seed, output, progress, warn)
     made = picture_of(prompt, endpoint, progress.part(0.0, 0.2))
     for note in made.notes:
         warn(note)
     choose = _choice(made.inputs, opened, profile, recipe, stages)
-    return _built(made.inputs, made.notes, opened, name, choose, output, progress.part(0.2, 1.0))
+    return _build(made.inputs, made.notes, opened, name, choose, output, progress.part(0.2, 1.0))
 
 
-def _composed(
+def _compose(
     prompt: str,
     library: ShapeLibrary,
     library_name: str | None,
@@ -217,7 +217,7 @@ def _straight(inputs: Inputs, distortion: Sequence[float]) -> tuple[Inputs, tupl
     return (without_distortion(inputs, lens) if lens.bends else inputs), ()
 
 
-def _opened(library: str | ShapeLibrary) -> tuple[ShapeLibrary, str | None]:
+def _open(library: str | ShapeLibrary) -> tuple[ShapeLibrary, str | None]:
     """A library and the name that opens it again, if it has one."""
     return (open_library(library), library) if isinstance(library, str) else (library, None)
 
@@ -240,7 +240,7 @@ def _choice(
     return choose
 
 
-def _built(
+def _build(
     inputs: Inputs,
     warnings: tuple[str, ...],
     library: ShapeLibrary,

@@ -20,7 +20,7 @@ from diorama_core.scene.room_edits import rescale_to_length
 from diorama_core.scene.types import Candidate, Scene, SceneObject, Support, yaw_rotation
 
 
-def answered(scene: Scene, library: ShapeLibrary, question_id: str, value: str) -> Scene:
+def apply_answer(scene: Scene, library: ShapeLibrary, question_id: str, value: str) -> Scene:
     """The scene after an answer, in which what was asked is certain.
 
     Args:
@@ -63,7 +63,7 @@ def _answer_presence(scene: Scene, library: ShapeLibrary, object_id: str, value:
     if value == NO:
         return without_objects(scene, library, (object_id,))[0]
     _need(value, (YES,), f"{YES} or {NO}")
-    return _believed(scene, object_id, replace(_belief(scene, object_id), present=1.0))
+    return _believe(scene, object_id, replace(_belief(scene, object_id), present=1.0))
 
 
 def _answer_kind(scene: Scene, library: ShapeLibrary, object_id: str, kind: str) -> Scene:
@@ -74,7 +74,7 @@ def _answer_kind(scene: Scene, library: ShapeLibrary, object_id: str, kind: str)
         scene = seat(scene, library, object_id)
     named = replace(scene.object(object_id), category=kind, label=kind if item.category != kind else item.label)
     scene = replace(scene, objects=tuple(named if o.id == object_id else o for o in scene.objects))
-    return _believed(scene, object_id, _belief(scene, object_id).with_kind(kind))
+    return _believe(scene, object_id, _belief(scene, object_id).with_kind(kind))
 
 
 def candidate_of(library: ShapeLibrary, item: SceneObject, kind: str) -> Candidate:
@@ -101,7 +101,7 @@ def _answer_front(scene: Scene, object_id: str, turn: str) -> Scene:
     if quarters:
         R = yaw_rotation(quarters * np.pi / 2) @ pose.R_world_object
         scene = edits.move(scene, object_id, replace(pose, R_world_object=R))
-    return _believed(scene, object_id, _belief(scene, object_id).with_front())
+    return _believe(scene, object_id, _belief(scene, object_id).with_front())
 
 
 def _answer_supporter(scene: Scene, library: ShapeLibrary, object_id: str, parent_id: str) -> Scene:
@@ -113,14 +113,14 @@ def _answer_supporter(scene: Scene, library: ShapeLibrary, object_id: str, paren
         new = Support(object_id, parent_id, "mounted on" if hung else "placed on")
         onto = move_onto(scene, object_id, parent_id, library) if scene.has_object(parent_id) else None
         scene = seat(edits.attach(scene, new), library, object_id) if onto is None else onto
-    return _believed(scene, object_id, _belief(scene, object_id).with_supporter(parent_id))
+    return _believe(scene, object_id, _belief(scene, object_id).with_supporter(parent_id))
 
 
 def _belief(scene: Scene, object_id: str) -> Belief:
     return scene.object(object_id).belief or Belief()
 
 
-def _believed(scene: Scene, object_id: str, belief: Belief) -> Scene:
+def _believe(scene: Scene, object_id: str, belief: Belief) -> Scene:
     objects = tuple(replace(o, belief=belief) if o.id == object_id else o for o in scene.objects)
     return replace(scene, objects=objects)
 

@@ -46,7 +46,7 @@ def ruler(scene: Scene) -> SceneObject | None:
     return min((o for o in scene.objects if _is_whole(scene, o) and not o.locked), key=order, default=None)
 
 
-def misplaced(scene: Scene, scale_sigma: float) -> float:
+def count_misplaced(scene: Scene, scale_sigma: float) -> float:
     """How many objects, right otherwise, are expected elsewhere since all lengths are wrong by one factor.
 
     Args:
@@ -131,7 +131,7 @@ def questions(scene: Scene) -> tuple[Question, ...]:
     candidates = [
         q for item in scene.objects if item.belief is not None for q in _object_questions(scene, item, item.belief)
     ]
-    length = _known_length(scene)
+    length = _length_question(scene)
     candidates += [] if length is None else [length]
     return tuple(sorted((q for q in candidates if q.gain >= LEAST_GAIN), key=lambda q: (-q.gain, q.id)))
 
@@ -177,7 +177,7 @@ def missing(scene: Scene, box: LabelledBox, present: float) -> Question:
     return Question(",".join(f"{v:.0f}" for v in box.box), "missing", "Is something here?", ordered, gain)
 
 
-def _known_length(scene: Scene) -> Question | None:
+def _length_question(scene: Scene) -> Question | None:
     """How high one thing is, by which all lengths are known; the thing is one that many know or can measure."""
     item = ruler(scene)
     if item is None or scene.scale_sigma is None or scene.scale_sigma <= KNOWN_LENGTH_SIGMA:
@@ -188,7 +188,7 @@ def _known_length(scene: Scene) -> Question | None:
     off = np.log([float(length) / now for length in lengths]) / scene.scale_sigma
     weights = np.exp(-0.5 * np.minimum(off**2, 50.0))
     choices = sorted(zip(lengths, weights / weights.sum(), strict=True), key=lambda choice: -choice[1])
-    gain = misplaced(scene, scene.scale_sigma) - misplaced(scene, KNOWN_LENGTH_SIGMA)
+    gain = count_misplaced(scene, scene.scale_sigma) - count_misplaced(scene, KNOWN_LENGTH_SIGMA)
     labels = tuple(Choice(v, f"{v} m" + (", as it is" if v == lengths[0] else ""), float(p)) for v, p in choices)
     return Question(item.id, "scale", f"How high is the {item.label}?", labels, gain)
 

@@ -9,7 +9,7 @@ import pytest
 from babel.messages.catalog import Catalog
 from babel.messages.mofile import write_mo
 
-from diorama_app.strings import N_, _, language, plural, translated_script, use_language
+from diorama_app.strings import N_, _, language, plural, translate_script, use_language
 from diorama_core.errors import InputError
 from scripts import strings as script
 
@@ -57,7 +57,7 @@ def test_texts_are_translated_and_others_stay(german: Path) -> None:
 def test_a_script_gets_its_texts_and_does_not_end_by_them(german: Path) -> None:
     use_language(str(german))
     script = 'x = _("Close"); y = __("Close"); z = _("Delete " +\n  "{name}");'
-    assert translated_script(script) == 'x = "Zu<\\/script>"; y = __("Close"); z = "{name} löschen";'
+    assert translate_script(script) == 'x = "Zu<\\/script>"; y = __("Close"); z = "{name} löschen";'
 
 
 def test_no_such_language_is_one_line(tmp_path: Path) -> None:

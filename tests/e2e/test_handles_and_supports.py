@@ -123,7 +123,7 @@ def test_what_a_recipe_made_worse_is_named_marked_and_put_back(editor: EditorPag
             commands.problems(final, session.library, Collisions(session.library)),
         )
         report = LayoutReport("paper", {"overlapping_pairs": 1.0}, {"overlapping_pairs": 2.0, "moved_m": 0.73}, 1.0)
-        commands._arranged(editor.session, final, report, run, by=editor.client, author="")
+        commands._arrange(editor.session, final, report, run, by=editor.client, author="")
 
     session.ui_thread.post(ended)
     editor.until(lambda: session.scene.object("lamp_1").pose != before.object("lamp_1").pose, "arranged")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_app.commands.measure import measured_m
+from diorama_app.commands.measure import length_m
 from tests.e2e.browser import EditorPage
 from tests.e2e.conftest import keep_picture
 
@@ -20,8 +20,8 @@ def test_a_measured_line_is_drawn_over_everything_and_snaps_to_corners(editor: E
     for corner in (np.array(corners[0]) + beside, np.array(corners[1]) + beside):
         editor.click_world(corner)
         editor.settle()
-    editor.until(lambda: measured_m(editor.client.doing) is not None, "measured")
-    assert measured_m(editor.client.doing) == pytest.approx(np.linalg.norm(np.subtract(*corners[:2])), abs=1e-6)
+    editor.until(lambda: length_m(editor.client.doing) is not None, "measured")
+    assert length_m(editor.client.doing) == pytest.approx(np.linalg.norm(np.subtract(*corners[:2])), abs=1e-6)
     over = """() => { const found = []; window.__viserMutable.nodeRefFromName['/tape/line'].traverse((o) =>
         o.isMesh && found.push([o.material.depthTest, o.renderOrder > 0])); return found; }"""
     page.wait_for_function(f"(({over})()).every(([tests, last]) => !tests && last)")

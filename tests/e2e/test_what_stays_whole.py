@@ -90,7 +90,7 @@ def test_sizes_that_a_recipe_changed_are_told_and_put_back(editor: EditorPage) -
     def ended() -> None:
         run = session.layout_run = LayoutRun("paper", 0.0, before)
         run.worse = optimise._worse(session, before, shrunk)
-        optimise._arranged(session, shrunk, LayoutReport("paper", {}, {}, 1.0), run, by=editor.client, author="")
+        optimise._arrange(session, shrunk, LayoutReport("paper", {}, {}, 1.0), run, by=editor.client, author="")
 
     session.ui_thread.post(ended)
     editor.until(lambda: session.scene.object("lamp_1").pose != lamp.pose, "arranged")

@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 from PIL import Image
 
-from diorama_app.projects.dropped import understood
+from diorama_app.projects.dropped import interpret
 from diorama_core.perception.inputs.depth.confidence import without_unsure
 from diorama_core.perception.inputs.source import Source
 from tests.fuzzing.form_files import OBJ_BACKWARDS, zipped
@@ -44,7 +44,7 @@ def dropped_samples() -> tuple[bytes, ...]:
 
 def read_dropped(data: bytes) -> object:
     """As the page does, with a photo open."""
-    return understood(data, "dropped", (64, 48))
+    return interpret(data, "dropped", (64, 48))
 
 
 def confidence_samples() -> tuple[bytes, ...]:

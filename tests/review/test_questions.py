@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.errors import EditRefused
-from diorama_core.review.answers import answered
-from diorama_core.review.questions import LEAST_GAIN, NO, YES, misplaced, questions, ruler
+from diorama_core.review.answers import apply_answer
+from diorama_core.review.questions import LEAST_GAIN, NO, YES, count_misplaced, questions, ruler
 from diorama_core.scene.belief import Belief
 from diorama_core.scene.room_edits import KNOWN_LENGTH_SIGMA
 from diorama_core.scene.types import Scene, Support
@@ -49,7 +49,7 @@ def test_the_ruler_stands_on_the_floor_whole_and_is_large_or_of_a_known_height(s
 
 
 def test_more_is_misplaced_the_less_the_scale_is_known(scene: Scene) -> None:
-    counts = [misplaced(scene, sigma) for sigma in (0.0, 0.02, 0.1, 0.5, 100.0)]
+    counts = [count_misplaced(scene, sigma) for sigma in (0.0, 0.02, 0.1, 0.5, 100.0)]
     assert counts == sorted(counts)
     assert counts[0] == 0.0
     everything = sum(o.belief.right for o in scene.objects if o.belief is not None)
@@ -59,7 +59,7 @@ def test_more_is_misplaced_the_less_the_scale_is_known(scene: Scene) -> None:
 def test_an_answer_brings_all_lengths_to_the_told_height_and_is_not_asked_again(scene: Scene) -> None:
     (question,) = [q for q in questions(scene) if q.subject == "scale"]
     before = scene.object(question.object_id).size_m[2]
-    after = answered(scene, PlainLibrary(), question.id, f"{1.25 * before} m")
+    after = apply_answer(scene, PlainLibrary(), question.id, f"{1.25 * before} m")
     assert after.object(question.object_id).size_m[2] == pytest.approx(1.25 * before)
     for item in scene.objects:
         np.testing.assert_allclose(after.object(item.id).pose.position, 1.25 * item.pose.position)
@@ -72,7 +72,7 @@ def test_choices_are_lengths_of_which_the_present_one_is_likeliest(scene: Scene)
     assert float(question.choices[0].value) == pytest.approx(scene.object(question.object_id).size_m[2], abs=0.006)
     assert sum(c.probability for c in question.choices) == pytest.approx(1.0)
     with pytest.raises(EditRefused, match="no length"):
-        answered(scene, PlainLibrary(), question.id, "tall")
+        apply_answer(scene, PlainLibrary(), question.id, "tall")
 
 
 def test_nothing_is_asked_of_a_scale_that_is_known(scene: Scene) -> None:

@@ -21,7 +21,7 @@ from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.pipeline.run import build_scene
 from diorama_core.progress import SILENT, Progress
-from diorama_core.review.answers import answered
+from diorama_core.review.answers import apply_answer
 from diorama_core.review.questions import TURNS, YES, Question, Subject, questions
 from diorama_core.scene.types import Scene
 
@@ -118,7 +118,7 @@ class Reviewed:
             return self._supporter(scene, question)
         if question.subject == "scale":
             return None
-        turned = ((t, answered(scene, self.library, question.id, t)) for t in TURNS)
+        turned = ((t, apply_answer(scene, self.library, question.id, t)) for t in TURNS)
         return next((t for t, after in turned if self.right(after, question.object_id).get("front")), None)
 
     def _supporter(self, scene: Scene, question: Question) -> str | None:
@@ -196,7 +196,7 @@ def shares_right(reviewed: KnownScene, order: Order) -> list[tuple[float, int]]:
 
 def _apply_answer(scene: Scene, question: Question, value: str, library: ShapeLibrary) -> Scene:
     try:
-        return answered(scene, library, question.id, value)
+        return apply_answer(scene, library, question.id, value)
     except EditRefused:  # the library has no such kind
         return scene
 

@@ -20,7 +20,7 @@ from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.pipeline.run import build_scene
 from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import SILENT, Progress
-from diorama_core.review.answers import answered
+from diorama_core.review.answers import apply_answer
 from diorama_core.review.questions import TURNS, YES, Question
 from diorama_core.scene.types import Scene, SceneObject
 from diorama_core.synthesis.artefacts import photo_only
@@ -92,7 +92,7 @@ class KnownRoom:
         turns = symmetry_turns(self.all_shapes.shape(true.shape_id).symmetry)
         for turn in TURNS:
             try:
-                after = answered(scene, self.library, question.id, turn)
+                after = apply_answer(scene, self.library, question.id, turn)
             except EditRefused:
                 continue
             R = align_to_truth(after, self.view).object(question.object_id).pose.R_world_object

@@ -14,7 +14,7 @@ import pytest
 from diorama_app.commands import edit as editing
 from diorama_app.commands import swap as swapping
 from diorama_app.commands.insert import insert_shape
-from diorama_app.commands.optimise import untouched
+from diorama_app.commands.optimise import final_poses
 from diorama_app.panels.fields import unique_names
 from diorama_app.panels.outliner import tree_html
 from diorama_app.panels.room_size import RoomSize
@@ -193,7 +193,7 @@ def test_an_optimiser_result_leaves_what_was_edited_meanwhile_and_what_is_locked
     raised = {o.id: o.pose.moved((0, 0, 1.0)) for o in start.objects}
     final = edits.place(start, raised)
     current = edits.set_locked(edits.rename(start, "chair_1", "mine"), "lamp_1", True)
-    assert set(untouched(current, start, final)) == {"table_1", "chair_2", "picture_1"}
+    assert set(final_poses(current, start, final)) == {"table_1", "chair_2", "picture_1"}
 
 
 def test_the_desk_works_in_order_and_keeps_only_the_newest_of_a_key() -> None:

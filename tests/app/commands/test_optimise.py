@@ -87,7 +87,7 @@ def _shrunk(session, client, recipe: str) -> LayoutRun:
     run = LayoutRun(recipe, time.monotonic(), start)
     run.worse = optimise._worse(session, start, final)
     figures = optimise.layout_figures(start, final, session.library)
-    optimise._arranged(session, final, LayoutReport(recipe, {}, figures, 0.1), run, by=client, author="")
+    optimise._arrange(session, final, LayoutReport(recipe, {}, figures, 0.1), run, by=client, author="")
     session.layout_run = run
     return run
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from diorama_app.commands.room_looks import (
-    chosen_surfaces,
     clock,
     finish_surfaces,
     set_hour,
+    surface_ids,
     surface_under,
     switch_all,
     use_daylight,
@@ -48,13 +48,13 @@ def test_the_surface_under_a_ray_is_the_nearest_that_faces_the_eye() -> None:
 
 def test_one_step_for_one_or_for_all_walls(session, client) -> None:
     with pytest.raises(EditRefused, match="no surface"):
-        chosen_surfaces(client, all_walls=False)
+        surface_ids(client, all_walls=False)
     client.select_surface("wall_2")
-    assert chosen_surfaces(client, all_walls=False) == ("wall_2",)
+    assert surface_ids(client, all_walls=False) == ("wall_2",)
     finish_surfaces(client, usual_finish("brick"), all_walls=True)
     assert all(p.finish is not None for p in session.scene.architecture.by_role("wall"))
     assert session.document.history.current.label == "brick on 4 walls"
     session.undo(client)
     assert all(p.finish is None for p in session.scene.architecture.planes)
     client.select_surface("floor")
-    assert chosen_surfaces(client, all_walls=True) == ("floor",)
+    assert surface_ids(client, all_walls=True) == ("floor",)

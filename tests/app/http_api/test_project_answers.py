@@ -9,7 +9,7 @@ pytest.importorskip("fastapi", reason="needs FastAPI (pip install 'diorama[api]'
 from fastapi import Request  # after the check for its library
 from pydantic import ValidationError
 
-from diorama_app.http_api.answers import png, told
+from diorama_app.http_api.answers import png, respond
 from diorama_app.http_api.forms import EditRequest
 from diorama_app.http_api.project_answers import check_answer, object_answer
 from diorama_core.api import Reconstruction
@@ -51,6 +51,6 @@ def test_an_edit_is_typed_or_in_words() -> None:
 
 @pytest.mark.parametrize(("error", "status"), [(EditRefused("a\nb"), 422), (ProjectError("damaged"), 500)])
 def test_errors_are_one_line(error: Exception, status: int) -> None:
-    reply = told(Request({"type": "http"}), error)
+    reply = respond(Request({"type": "http"}), error)
     assert reply.status_code == status
     assert b"\\n" not in reply.body

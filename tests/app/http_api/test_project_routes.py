@@ -17,7 +17,7 @@ pytest.importorskip("fastapi", reason="needs FastAPI (pip install 'diorama[api]'
 pytest.importorskip("uvicorn", reason="needs uvicorn (pip install 'diorama[api]')")
 
 from diorama_app.http_api import beside  # after the check for its libraries
-from diorama_app.http_api.beside import api_beside, noted_servers
+from diorama_app.http_api.beside import api_beside, find_servers
 from diorama_app.serve import Running
 from tests.app.http_api.openapi_client import Client
 from tests.app.people import join
@@ -57,9 +57,9 @@ def test_the_token_of_the_page_is_asked_for(client: Client) -> None:
 
 
 def test_programs_find_the_server(client: Client) -> None:
-    assert [s.address.rstrip("/") for s in noted_servers()] == [client.url]
+    assert [s.address.rstrip("/") for s in find_servers()] == [client.url]
     (beside._folder() / "1-9.json").write_text('{"address": "http://127.0.0.1:9/", "token": null}')
-    assert [s.address.rstrip("/") for s in noted_servers()] == [client.url]
+    assert [s.address.rstrip("/") for s in find_servers()] == [client.url]
     assert len(list(beside._folder().iterdir())) == 1
 
 

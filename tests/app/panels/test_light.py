@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from diorama_app.panels.light import LightPanel, told_light
+from diorama_app.panels.light import LightPanel, light_state
 from diorama_core.scene.light_settings import PHOTO_LIGHT, LightSettings
 from diorama_core.scene.types import Scene
 from tests.app.page import Page
@@ -59,8 +59,8 @@ def test_nonsense_is_refused_and_changes_nothing(session, client, page, panel) -
 
 
 def test_an_empty_project_has_no_light_to_set_and_the_page_is_told_the_windows() -> None:
-    told = told_light(replace(room(), light_settings=LightSettings(hour=12.0)))
+    told = light_state(replace(room(), light_settings=LightSettings(hour=12.0)))
     assert told["windows"] == [[-0.5, 2.0, 0.5, 2.0]]
     assert len(told["outline"]) == 4
     assert told["up"] == pytest.approx(0.7071, abs=1e-3)
-    assert told_light(Scene())["azimuth"] is None
+    assert light_state(Scene())["azimuth"] is None

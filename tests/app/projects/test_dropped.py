@@ -11,7 +11,7 @@ import pytest
 import trimesh
 from PIL import Image
 
-from diorama_app.projects.dropped import Dropped, understood
+from diorama_app.projects.dropped import Dropped, interpret
 from diorama_app.projects.dropped_files import files_of, upload_of
 from diorama_core.errors import InputError
 from diorama_core.importing.point_cloud import MIN_POINTS
@@ -39,7 +39,7 @@ def packed(files: dict[str, bytes]) -> bytes:
 
 
 def dropped(files: dict[str, bytes], photo_size: tuple[int, int] | None = None) -> Dropped:
-    return understood(packed(files), "drop.zip", photo_size)
+    return interpret(packed(files), "drop.zip", photo_size)
 
 
 def glb(*boxes: tuple[tuple[float, float, float], tuple[float, float, float]]) -> bytes:
@@ -62,7 +62,7 @@ def test_confidence_comes_with_its_depth() -> None:
     depth, notes = read_depth(upload.depth, DepthOptions(1000.0), read_photo(read_source(PHOTO, "photo"), 1600))
     assert (depth[:40] == 0).all()
     assert "unsure by confidence.png" in " ".join(notes)
-    (alone,) = understood(levels, "room_confidence.png", (WIDTH, HEIGHT)).readings
+    (alone,) = interpret(levels, "room_confidence.png", (WIDTH, HEIGHT)).readings
     assert (alone.action, alone.inputs[0][0]) == ("inputs", "confidence")
 
 
@@ -112,29 +112,29 @@ def test_files_of_the_open_photo() -> None:
     ]
     with pytest.raises(InputError, match="no photo"):
         dropped({"boxes.json": BOXES, "depth.png": DEPTH})
-    (alone,) = understood(BOXES, "boxes.json", (WIDTH, HEIGHT)).readings
+    (alone,) = interpret(BOXES, "boxes.json", (WIDTH, HEIGHT)).readings
     assert alone.inputs == (("boxes", "boxes.json"),)
-    assert [r.action for r in understood(YOLO, "a.txt", (WIDTH, HEIGHT)).readings] == ["inputs"]
+    assert [r.action for r in interpret(YOLO, "a.txt", (WIDTH, HEIGHT)).readings] == ["inputs"]
 
 
 def test_a_model_a_room_and_a_scan() -> None:
     chair = glb(((0.5, 0.9, 0.5), (0, 0.45, 0)))
-    assert [r.action for r in understood(chair, "chair.glb", None).readings] == ["models"]
+    assert [r.action for r in interpret(chair, "chair.glb", None).readings] == ["models"]
     furnished = glb(((4, 0.1, 3), (0, 0, 0)), ((4, 2.5, 0.1), (0, 1.25, 1.5)), ((0.5, 0.9, 0.5), (0, 0.5, 0)))
-    assert [r.action for r in understood(furnished, "room.glb", None).readings] == ["scene", "models"]
+    assert [r.action for r in interpret(furnished, "room.glb", None).readings] == ["scene", "models"]
     found = dropped({"m/a.glb": chair, "m/b.glb": chair, "m/wood.png": PHOTO, "m/readme.txt": b"x"})
     assert [(r.action, r.words) for r in found.readings] == [("models", "2 models (glTF) for the library")]
     assert found.left_out == ("readme.txt",)
     points = trimesh.PointCloud(np.random.default_rng(0).uniform(0, 3, (MIN_POINTS, 3))).export(file_type="ply")
-    assert [r.action for r in understood(points, "scan.ply", None).readings] == ["scene"]
+    assert [r.action for r in interpret(points, "scan.ply", None).readings] == ["scene"]
 
 
 def test_arrays_of_points_are_scans_and_lossy_masks_are_masks() -> None:
     points = np.random.default_rng(0).uniform(0, 3, (MIN_POINTS, 3)).astype(np.float32)
-    assert [r.action for r in understood(npy(points), "scan.npy", (WIDTH, HEIGHT)).readings] == ["scene"]
+    assert [r.action for r in interpret(npy(points), "scan.npy", (WIDTH, HEIGHT)).readings] == ["scene"]
     bright = np.column_stack([points, np.zeros(len(points), np.float32)])
-    assert [r.action for r in understood(bright.tobytes(), "scan.bin", None).readings] == ["scene"]
-    assert [r.action for r in understood(npy(room()[0]), "depth.npy", (WIDTH, HEIGHT)).readings] == ["inputs"]
+    assert [r.action for r in interpret(bright.tobytes(), "scan.bin", None).readings] == ["scene"]
+    assert [r.action for r in interpret(npy(room()[0]), "depth.npy", (WIDTH, HEIGHT)).readings] == ["inputs"]
     lossy = encoded(Image.open(io.BytesIO(OBJECT)), "JPEG")
     found = dropped({"a.jpg": PHOTO, "masks/0.jpg": lossy, "masks/1.jpg": lossy})
     assert [(r.action, r.photos[0].beside) for r in found.readings] == [
@@ -149,7 +149,7 @@ def test_frames_of_a_data_set_are_no_photos() -> None:
 
 def test_what_is_not_read_is_said() -> None:
     with pytest.raises(InputError, match="SketchUp model: export it"):
-        understood(b"\xff\xfe\xff\x0eS", "a.skp", None)
+        interpret(b"\xff\xfe\xff\x0eS", "a.skp", None)
     with pytest.raises(InputError, match=r"drop.zip holds no photo.*b.md"):
         dropped({"notes.md": b"hello", "b.md": b"hello"})
     assert json.dumps(Dropped((), tuple("abcdefgh")).unused()) == '"Left out: a, b, c, d, e, f and 2 more"'

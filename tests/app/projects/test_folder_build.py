@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from diorama_app.projects.folder_build import RECORD, build_photos, finished_report
+from diorama_app.projects.folder_build import RECORD, build_photos, report_of
 from diorama_app.projects.folder_photos import photos_of
 from diorama_app.projects.options import BuildOptions
 from diorama_core.errors import Cancelled, ProjectError
@@ -103,8 +103,8 @@ def test_a_place_that_cannot_be_written_is_one_line(folder: Path, tmp_path: Path
 def test_a_record_that_is_not_of_this_build_is_none(tmp_path: Path, record: str) -> None:
     (tmp_path / RECORD).write_text(record)
     (tmp_path / "scene.json").write_text("{}")
-    assert finished_report(tmp_path, "k") is None
+    assert report_of(tmp_path, "k") is None
     (tmp_path / RECORD).write_text('{"key": "k", "report": {"notes": []}}')
-    assert finished_report(tmp_path, "k") == {"notes": []}
+    assert report_of(tmp_path, "k") == {"notes": []}
     (tmp_path / "scene.json").unlink()
-    assert finished_report(tmp_path, "k") is None
+    assert report_of(tmp_path, "k") is None

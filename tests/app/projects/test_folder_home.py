@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diorama_app.projects.folder_home import SharedDoor, homes_of, join_rooms, shared_doors
+from diorama_app.projects.folder_home import SharedDoor, homes_of, join_rooms, read_doors
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import PhotoMaterial
@@ -43,14 +43,14 @@ def test_rooms_join_in_whatever_order_their_doors_are_named(rooms: dict[str, Pat
     (tmp_path / "home.json").write_text(
         json.dumps({"doors": [{"hall": "door_1", "study": "front door"}, {"bath": "door_1", "hall": "door_2"}]})
     )
-    home = join_rooms(rooms, shared_doors(tmp_path), tmp_path / "home")
+    home = join_rooms(rooms, read_doors(tmp_path), tmp_path / "home")
     scene = home.load_scene()
     assert [r.name for r in scene.rooms] == ["hall", "study", "bath"]
     assert sorted(o.id for o in scene.objects if o.category == "door") == ["door_1", "door_2"]
     assert len(home.textures(scene)) == len({p.texture for p in scene.architecture.planes if p.texture})
     assert home.load_inputs() is not None
     before = Project.open(rooms["hall"]).load_scene()
-    again = join_rooms(rooms, shared_doors(tmp_path)[:1], tmp_path / "home")
+    again = join_rooms(rooms, read_doors(tmp_path)[:1], tmp_path / "home")
     assert len(again.load_scene().rooms) == 2
     assert Project.open(rooms["hall"]).load_scene() == before, "the rooms stay as they are"
 
@@ -81,7 +81,7 @@ def test_a_room_that_no_door_leads_to_is_named(rooms: dict[str, Path], tmp_path:
 def test_a_file_that_says_something_else_is_one_line(tmp_path: Path, content: str) -> None:
     (tmp_path / "home.json").write_text(content)
     with pytest.raises(InputError, match=r"home\.json"):
-        shared_doors(tmp_path)
+        read_doors(tmp_path)
 
 
 def test_a_folder_of_folders_is_a_home_each(tmp_path: Path) -> None:

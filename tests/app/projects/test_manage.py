@@ -73,7 +73,7 @@ def test_projects_are_listed_by_the_time_of_their_scene_or_photo(tmp_path: Path)
     copy = duplicate_project(tmp_path / "scene", tmp_path)
     assert recent_projects(tmp_path)[0] == copy.folder, "a copy is new, also one of an old project"
     assert (copy.has_scene, copy.has_photo) == (True, False)
-    assert (manage.touched(tmp_path / "photo"), manage.touched(tmp_path / "neither")) == (1e9 + 1, 0.0)
+    assert (manage.mtime(tmp_path / "photo"), manage.mtime(tmp_path / "neither")) == (1e9 + 1, 0.0)
     assert recent_projects(tmp_path / "none") == []
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from diorama_app.projects.dropped import understood
+from diorama_app.projects.dropped import interpret
 from diorama_app.projects.manage import recent_projects
 from diorama_app.projects.packing import is_packed, pack_project, unpack_project
 from diorama_app.reconstruction.opening_job import open_packed
@@ -79,7 +79,7 @@ def test_packed_projects_are_told_by_their_names(names: tuple[str, ...], packed:
 
 def test_one_that_is_dropped_on_the_page_opens(packed: Path, client, session) -> None:
     content = packed.read_bytes()
-    (reading,) = understood(content, "sent.zip", None).readings
+    (reading,) = interpret(content, "sent.zip", None).readings
     assert reading.action == "project"
     open_packed(client, "sent.zip", content)
     assert session.jobs.wait(30.0)

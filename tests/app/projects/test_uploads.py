@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from diorama_app.projects.uploads import Upload, decoded
+from diorama_app.projects.uploads import Upload, decode
 from diorama_core.errors import InputError
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.inputs import read_inputs
@@ -41,7 +41,7 @@ UPLOAD = Upload(
 
 
 def test_everything_arrives_as_it_was_sent(process: LimitedProcess) -> None:
-    read = decoded(UPLOAD, process)
+    read = decode(UPLOAD, process)
     here = read_inputs(
         UPLOAD.photo, name="room.png", depth=UPLOAD.depth, depth_scale=250.0, boxes=UPLOAD.boxes, fov_deg=60.0
     )
@@ -53,7 +53,7 @@ def test_everything_arrives_as_it_was_sent(process: LimitedProcess) -> None:
     assert read.inputs.boxes == here.inputs.boxes
     assert read.inputs.intrinsics == here.inputs.intrinsics
     assert read.warnings == here.warnings
-    sized = decoded(replace(UPLOAD, fov_deg=None, intrinsics=(80.0, 80.0, 48.0, 32.0)), process)
+    sized = decode(replace(UPLOAD, fov_deg=None, intrinsics=(80.0, 80.0, 48.0, 32.0)), process)
     assert sized.inputs.intrinsics is not None
     assert sized.inputs.intrinsics.fx == pytest.approx(80.0)
 
@@ -62,7 +62,7 @@ def test_what_needs_too_much_memory_is_one_line() -> None:
     small = LimitedProcess(memory=700_000_000)
     try:
         with pytest.raises(InputError, match=r"^large\.png: .*memory") as told:
-            decoded(Upload(png(9_000, 7_000, 8, 6, 4), "large.png"), small)
+            decode(Upload(png(9_000, 7_000, 8, 6, 4), "large.png"), small)
     finally:
         small.stop()
     assert "\n" not in str(told.value)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_app.projects.begin import begin_project
-from diorama_app.projects.uploads import Upload, decoded
+from diorama_app.projects.uploads import Upload, decode
 from diorama_app.reconstruction.build_job import NewScene, build, show_built, start_build
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
@@ -138,7 +138,7 @@ def test_a_360_degree_photo_that_was_marked_becomes_a_room_with_its_views(
     session: EditorSession, client: Client
 ) -> None:
     picture, boxes = sphere_with_wardrobe(1.4)
-    given = decoded(Upload(picture, "all.png", boxes=boxes, sphere=True), LimitedProcess())
+    given = decode(Upload(picture, "all.png", boxes=boxes, sphere=True), LimitedProcess())
     session.open_project(begin_project(session.projects_dir, "all.png", given, picture))
     assert session.unfinished
     before = session.scene

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_app.reconstruction.camera_correction import checked_angles
+from diorama_app.reconstruction.camera_correction import check_angles
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs
 from diorama_core.errors import InputError
 from diorama_core.geometry.rotations import CameraAttitude
@@ -56,4 +56,4 @@ def test_what_is_said_of_the_tilt_leaves_heading_and_focal_length() -> None:
 @pytest.mark.parametrize(("tilt", "roll"), [(85.0, 0.0), (0.0, -50.0)])
 def test_nobody_holds_a_camera_so(tilt: float, roll: float) -> None:
     with pytest.raises(InputError, match="not possible for a photo of a room"):
-        checked_angles(tilt, roll)
+        check_angles(tilt, roll)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from diorama_app.projects.dropped import understood
+from diorama_app.projects.dropped import interpret
 from diorama_app.reconstruction.dropped_photos import begin_each, build_one_room
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
@@ -24,7 +24,7 @@ def test_each_photo_is_a_project_with_what_belongs_to_it(
     session: EditorSession, client: Client, visited: list[tuple[Project, str]]
 ) -> None:
     content = packed({"a.jpg": PHOTO, "a.json": BOXES, "b.jpg": PHOTO})
-    reading = next(r for r in understood(content, "drop.zip", None).readings if r.action == "photos")
+    reading = next(r for r in interpret(content, "drop.zip", None).readings if r.action == "photos")
     begin_each(client, "drop.zip", content, reading)
     until(lambda: bool(visited), seconds=60)
     ((first, said),) = visited
@@ -39,7 +39,7 @@ def test_a_room_of_photos_that_are_none_leaves_no_project(
     session: EditorSession, client: Client, visited: list[tuple[Project, str]]
 ) -> None:
     content = packed({"a.jpg": PHOTO, "b.jpg": PHOTO})
-    reading = next(r for r in understood(content, "drop.zip", None).readings if r.action == "photos")
+    reading = next(r for r in interpret(content, "drop.zip", None).readings if r.action == "photos")
     before = set(session.projects_dir.iterdir())
     broken = packed({"a.jpg": b"\xff\xd8\xff no picture", "b.jpg": PHOTO})
     build_one_room(client, "drop.zip", broken, reading)

@@ -12,7 +12,7 @@ import pytest
 import torch
 
 from diorama_app.reconstruction import suggestions as suggesting
-from diorama_app.reconstruction.suggestions import COUNT, Suggestions, unmarked
+from diorama_app.reconstruction.suggestions import COUNT, Suggestions, drop_marked
 from diorama_core.artefacts import Box, LabelledBox, Photo
 from diorama_core.io import assets
 from diorama_core.models.boxes import Detections
@@ -180,10 +180,10 @@ def test_a_damaged_network_does_not_stop_marking(
 def test_in_a_marked_box_something_smaller_is_meant() -> None:
     sofa, pillow, other = (100.0, 100.0, 400.0, 300.0), (150.0, 150.0, 220.0, 220.0), (90.0, 90.0, 600.0, 400.0)
     found = Detections(np.array([sofa, pillow, other]), np.ones(3), np.zeros(3, dtype=int))
-    assert unmarked(found, 180.0, 180.0, ()) is found
-    assert unmarked(found, 500.0, 350.0, (sofa,)) is found, "beside what is marked"
-    assert unmarked(found, 180.0, 180.0, (sofa,)).boxes.tolist() == [list(pillow)]
-    assert not len(unmarked(found, 180.0, 180.0, (sofa, pillow)))
+    assert drop_marked(found, 180.0, 180.0, ()) is found
+    assert drop_marked(found, 500.0, 350.0, (sofa,)) is found, "beside what is marked"
+    assert drop_marked(found, 180.0, 180.0, (sofa,)).boxes.tolist() == [list(pillow)]
+    assert not len(drop_marked(found, 180.0, 180.0, (sofa, pillow)))
 
 
 def test_without_weights_nothing_is_suggested(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:

@@ -15,7 +15,7 @@ from diorama_app.reconstruction.written_files import (
     download_suffix,
     file_stem,
     film_suffix,
-    packed,
+    pack,
     picture_size,
     size_in_words,
     take_picture,
@@ -32,14 +32,14 @@ def test_formats_of_several_files_are_downloaded_as_a_zip(name: str, suffix: str
 
 def test_one_file_is_handed_over_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "room.glb").write_bytes(b"model")
-    assert packed(tmp_path, "room.zip") == ("room.glb", b"model")
+    assert pack(tmp_path, "room.zip") == ("room.glb", b"model")
 
 
 def test_a_file_with_companions_is_packed_with_their_places(tmp_path: Path) -> None:
     (tmp_path / "room.usda").write_text("stage")
     (tmp_path / "room_files").mkdir()
     (tmp_path / "room_files" / "wood.png").write_bytes(b"picture")
-    name, content = packed(tmp_path, "room-usda.zip")
+    name, content = pack(tmp_path, "room-usda.zip")
     assert name == "room-usda.zip"
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         assert {n: archive.read(n) for n in archive.namelist()} == {

@@ -6,7 +6,7 @@ from dataclasses import fields, replace
 
 import pytest
 
-from diorama_app.session.preferences import Preferences, preferences_text, read_preferences, remember, remembered
+from diorama_app.session.preferences import Preferences, preferences_text, read_preferences, recall, remember
 from tests.app.people import LocalClient
 
 
@@ -53,7 +53,7 @@ def test_every_setting_is_retained_except_that_outlines_are_shown() -> None:
     assert same == ["masks"], "this test forgot a setting"
     one = viser_client()
     remember(one, replace(CHANGED, masks=True))
-    assert remembered(one) == CHANGED
+    assert recall(one) == CHANGED
 
 
 @pytest.mark.parametrize("retained", [None, "", "{", "[]", '{"unit": "parsec"}', '{"snap": "perhaps"}'])
@@ -67,4 +67,4 @@ def test_settings_of_another_version_keep_what_is_known() -> None:
 
 
 def test_a_browser_that_keeps_nothing_is_somebody_new() -> None:
-    assert remembered(viser_client(Shut())) == Preferences()
+    assert recall(viser_client(Shut())) == Preferences()

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_app.session.textures import refitted
+from diorama_app.session.textures import refit
 from diorama_core.appearance.surface_finish import usual_finish
 from diorama_core.scene import edits
 from diorama_core.scene.room_edits import move_plane, set_surface_finish
@@ -15,7 +15,7 @@ SCENE = furnished_scene()
 
 def test_an_edit_of_furniture_leaves_every_picture_alone() -> None:
     moved = edits.rename(SCENE, "chair_1", "throne")
-    assert refitted(SCENE, moved, {"floor.png": np.zeros((4, 4, 3), dtype=np.uint8)}) == (moved, {})
+    assert refit(SCENE, moved, {"floor.png": np.zeros((4, 4, 3), dtype=np.uint8)}) == (moved, {})
 
 
 def test_a_longer_floor_gets_a_larger_picture_of_the_same_scale(rng) -> None:
@@ -29,7 +29,7 @@ def test_a_longer_floor_gets_a_larger_picture_of_the_same_scale(rng) -> None:
         before, architecture=replace(before.architecture, planes=tuple(longer if p is textured else p for p in planes))
     )
     picture = rng.integers(0, 256, (80, 80, 3), dtype=np.uint8)
-    scene, made = refitted(before, after, {"floor.png": picture})
+    scene, made = refit(before, after, {"floor.png": picture})
     assert len(made) == 1
     name = next(iter(made))
     assert name != "floor.png"
@@ -43,11 +43,9 @@ def test_a_moved_wall_has_its_finish_made_anew_and_the_photo_below_it_fitted(rng
     bare = replace(SCENE.plane("wall_2"), texture="wall.png")
     planes = tuple(bare if p.id == "wall_2" else p for p in SCENE.architecture.planes)
     before = replace(SCENE, architecture=replace(SCENE.architecture, planes=planes))
-    finished, made = refitted(
-        before, set_surface_finish(before, ("wall_2",), usual_finish("dots")), {"wall.png": photo}
-    )
+    finished, made = refit(before, set_surface_finish(before, ("wall_2",), usual_finish("dots")), {"wall.png": photo})
     known = {"wall.png": photo, **made}
-    moved, more = refitted(finished, move_plane(finished, "wall_3", 1.0), known)
+    moved, more = refit(finished, move_plane(finished, "wall_3", 1.0), known)
     wall = moved.plane("wall_2")
     assert {wall.texture, wall.photo_texture} == set(more)
     assert wall.texture != finished.plane("wall_2").texture

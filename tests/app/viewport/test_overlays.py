@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_app.reconstruction.camera_correction import CameraAttitude, trial_camera
-from diorama_app.viewport.overlays import SELECTED_COLOUR, draw_ground, draw_planes, mask_picture, seen_objects
+from diorama_app.viewport.overlays import SELECTED_COLOUR, draw_ground, draw_planes, mask_picture, visible_objects
 from diorama_core.artefacts import DetectedObject
 from diorama_core.scene.types import Scene
 from tests.app.small_room import furnished_scene
@@ -27,22 +27,22 @@ def disc() -> DetectedObject:
 
 
 def test_outlines_are_drawn_where_they_hold_and_boxes_where_not() -> None:
-    items = seen_objects(scene(), (disc(),))
+    items = visible_objects(scene(), (disc(),))
     picture = mask_picture((640, 480), items, ())
     assert picture[110, 150, 3] > 0
     assert picture[62, 103, 3] == 0, "the corner of the box is outside its mask"
     assert picture[250, 330, 3] > 0, "no outline is known: its box"
     assert picture[400, 600, 3] == 0
     moved = replace(scene(), objects=tuple(replace(o, box_px=(0.0, 0.0, 50.0, 50.0)) for o in scene().objects))
-    assert all(t.mask is None for t in seen_objects(moved, (disc(),))), "its box was drawn anew"
+    assert all(t.mask is None for t in visible_objects(moved, (disc(),))), "its box was drawn anew"
 
 
 def test_what_is_selected_is_orange_and_on_top_and_what_is_hidden_is_not_drawn() -> None:
-    items = seen_objects(scene(), (disc(),))
+    items = visible_objects(scene(), (disc(),))
     picture = mask_picture((640, 480), items, ("table_1",))
     assert tuple(picture[110, 150, :3]) == SELECTED_COLOUR
     hidden = replace(scene(), objects=tuple(replace(o, hidden=True) for o in scene().objects))
-    assert seen_objects(hidden, (disc(),)) == ()
+    assert visible_objects(hidden, (disc(),)) == ()
 
 
 def test_planes_are_drawn_where_the_camera_sees_their_edges() -> None:

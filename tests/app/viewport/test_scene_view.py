@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from diorama_app.viewport.mesh_assets import ShapeBytes, plane_glb, reduced
+from diorama_app.viewport.mesh_assets import ShapeBytes, plane_glb, reduce
 from diorama_app.viewport.scene_view import BELOW_M, MARGIN_M, MESH_NAMES, Viewport, ground_glb
 from diorama_core.editing.plan_edits import empty_room
 from diorama_core.geometry.rotations import quaternion_wxyz
@@ -167,8 +167,8 @@ def test_planes_with_pictures_are_drawn_with_them(server, viewport) -> None:
 
 
 def test_pictures_are_made_no_larger_than_asked() -> None:
-    assert reduced(np.zeros((200, 400, 3), np.uint8), 100).shape == (50, 100, 3)
-    assert reduced(np.zeros((20, 40, 3), np.uint8), 100).shape == (20, 40, 3)
+    assert reduce(np.zeros((200, 400, 3), np.uint8), 100).shape == (50, 100, 3)
+    assert reduce(np.zeros((20, 40, 3), np.uint8), 100).shape == (20, 40, 3)
 
 
 def test_the_room_stands_on_its_ground_where_graphics_are_not_low(server, viewport) -> None:

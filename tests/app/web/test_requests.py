@@ -19,9 +19,9 @@ from websockets.http11 import Request
 from websockets.server import ServerProtocol
 from websockets.typing import Subprotocol
 
-from diorama_app.strings import translated_script
+from diorama_app.strings import translate_script
 from diorama_app.web import viser_adapter
-from diorama_app.web.requests import MESSAGES_AT_ONCE, MESSAGES_PER_S, Bridge, paced, project_of, redirected
+from diorama_app.web.requests import MESSAGES_AT_ONCE, MESSAGES_PER_S, Bridge, pace, project_of, redirect
 from diorama_app.web.responses import SCRIPTS
 from diorama_app.web.viser_adapter import create_server, stop_server
 from diorama_app.web.visitors import Visitors
@@ -95,7 +95,7 @@ def test_our_scripts_run_before_the_page_and_the_page_is_whole(server: viser.Vis
     page = gzip.decompress(body) if encoding == "gzip" else body
     assert len(SCRIPTS) >= 3
     for path in SCRIPTS:
-        script = translated_script(path.read_text("utf-8")).encode()
+        script = translate_script(path.read_text("utf-8")).encode()
         assert page.count(script) == 1
         assert page.index(script) < page.index(b"<script data-p")
     assert page.rstrip().endswith(b"</html>")
@@ -199,7 +199,7 @@ def test_messages_of_one_connection_are_taken_at_a_pace(monkeypatch: pytest.Monk
             assert now[0] - began == pytest.approx(1.0)
             rests.append(rest_s)
 
-    asyncio.run(paced(read)(Connection()))
+    asyncio.run(pace(read)(Connection()))
     assert rests == [0.0, 1.0, 600.0], "the handler is awaited"
 
 
@@ -209,9 +209,9 @@ def test_every_connection_is_paced(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def noted(handler):
         handlers.append(handler)
-        return paced(handler)
+        return pace(handler)
 
-    monkeypatch.setattr(viser_adapter, "paced", noted)
+    monkeypatch.setattr(viser_adapter, "pace", noted)
     stop_server(create_server(host="127.0.0.1", port=0, label="test", visitors=Visitors("127.0.0.1")))
     assert len(handlers) == 1
 
@@ -219,7 +219,7 @@ def test_every_connection_is_paced(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_an_address_names_its_project_and_one_that_names_none_leads_to_one() -> None:
     assert project_of("/?project=my%20room&tour=1") == "my room"
     assert project_of("/?tour=1") is None
-    reply = redirected(Request("/?tour=&unit=ft", Headers()), "my room")
+    reply = redirect(Request("/?tour=&unit=ft", Headers()), "my room")
     assert reply.status_code == 302
     assert reply.headers["Location"] == "/?tour=&unit=ft&project=my+room"
 

@@ -20,7 +20,7 @@ from viser import _messages
 from viser.infra import _infra
 from websockets.sync.client import connect
 
-from diorama_app.web.viser_adapter import create_server, packed, stop_server
+from diorama_app.web.viser_adapter import create_server, pack, stop_server
 from diorama_app.web.visitors import Visitors
 from diorama_core.errors import InputError
 from tests.app.web.http_client import connects, fetch
@@ -153,4 +153,4 @@ def test_one_half_character_does_not_blank_the_page_for_everybody(server: viser.
 def test_what_viser_packs_goes_through_one_place() -> None:
     used = set(re.findall(r"(?<!import )msgspec[\w.]+", inspect.getsource(_infra)))
     assert used == {"msgspec.msgpack.encode"}
-    assert packed({"plain": 1}) == msgspec.msgpack.encode({"plain": 1})
+    assert pack({"plain": 1}) == msgspec.msgpack.encode({"plain": 1})
