@@ -94,15 +94,15 @@ class Editor:
         session = self.session
         session.on_client = self._lay_out
         session.view.on_photo_camera = self.views.photo_of
-        session.view.on_pick = lambda object_id, event: self._hand(event, lambda g: g.picked(object_id, event))
-        session.view.on_drag = lambda object_id, event: self._hand(event, lambda g: g.dragged(object_id, event))
+        session.view.on_pick = lambda object_id, event: self._hand(event, lambda g: g.pick(object_id, event))
+        session.view.on_drag = lambda object_id, event: self._hand(event, lambda g: g.drag(object_id, event))
         self._outlines = PhotoOutlines(session)
         self.commands = build_commands(session, self.views, self._outlines, self._cancel, self._help, show_picture)
-        self.commands.register(server.gui, self._asked)
+        self.commands.register(server.gui, self._ask)
         server.gui.set_panel_label("Diorama")
         set_theme(server.gui, dark=False)
 
-    def _asked(self, command: Command, client_id: int | None) -> None:
+    def _ask(self, command: Command, client_id: int | None) -> None:
         client = None if client_id is None else self.session.clients.get(client_id)
         if isinstance(client, Client):
             client.post(lambda: command.run(client))
@@ -139,8 +139,8 @@ class Editor:
         self.session.ui_thread.wait(60.0)
         if done:
             raise done[0]
-        self.server.on_client_connect(self._joined)
-        self.server.on_client_disconnect(self._left)
+        self.server.on_client_connect(self._join)
+        self.server.on_client_disconnect(self._leave)
 
     def _open_example(self) -> None:
         session = self.session
@@ -249,8 +249,8 @@ class Editor:
         with exporting:
             place(_("The export"), lambda: ExportPanel(gui, client))
 
-    async def _joined(self, viser_client: viser.ClientHandle) -> None:
-        self.session.ui_thread.post(lambda: self.session.joined(viser_client))
+    async def _join(self, viser_client: viser.ClientHandle) -> None:
+        self.session.ui_thread.post(lambda: self.session.join(viser_client))
         threading.Thread(target=self._recall, args=(viser_client,), daemon=True, name="settings").start()
 
     def _recall(self, viser_client: viser.ClientHandle) -> None:
@@ -264,10 +264,10 @@ class Editor:
 
         self.session.ui_thread.post(take)
 
-    async def _left(self, viser_client: viser.ClientHandle) -> None:
+    async def _leave(self, viser_client: viser.ClientHandle) -> None:
         def leave() -> None:
             self._gestures.pop(viser_client.client_id, None)
-            self.session.left(viser_client)
+            self.session.leave(viser_client)
 
         self.session.ui_thread.forget(viser_client.client_id)
         self.session.ui_thread.post(leave)

@@ -171,7 +171,7 @@ class Workspace:
         editor = Editor(server, self._library, self._projects_dir, low_graphics=self._low_graphics)
         session = editor.session
         session.visit = self.visit
-        session.on_left = self._left
+        session.on_left = self._leave
         if self._editors:
             session.shared = self._editors[0].session.shared
         try:
@@ -183,7 +183,7 @@ class Workspace:
         self._asked_for[editor] = time.monotonic()
         return editor
 
-    def _left(self) -> None:
+    def _leave(self) -> None:
         """A page was closed: look a while later whether its project is still needed. One timer, however many left."""
         with self._lock:
             if self._timer is not None and self._timer.is_alive():
@@ -199,4 +199,4 @@ class Workspace:
             busy = any(not editor.session.clients for editor in self._editors[1:])
             again, self._left_meanwhile, self._timer = self._left_meanwhile or busy, False, None
         if again:
-            self._left()
+            self._leave()

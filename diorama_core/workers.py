@@ -101,7 +101,7 @@ class LocalWorkers:
                     return
                 wait(running, return_when=FIRST_COMPLETED)
                 for process in processes:
-                    yield from process.finished()
+                    yield from process.finish()
         finally:
             for process in processes:
                 process.end()
@@ -124,12 +124,12 @@ class _Process(Generic[Item, Result]):
             )
             try:
                 future = self._pool.submit(self._function, item)
-            except BrokenProcessPool as error:  # it died just now: `finished` finds out what it worked on
+            except BrokenProcessPool as error:  # it died just now: `finish` finds out what it worked on
                 future = Future()
                 future.set_exception(error)
             self.running[future] = item
 
-    def finished(self) -> Iterator[FinishedItem[Item, Result]]:
+    def finish(self) -> Iterator[FinishedItem[Item, Result]]:
         """The pieces that are done, or that it died of."""
         done = [future for future in self.running if future.done()]
         broken = next((f for f in done if isinstance(f.exception(), BrokenProcessPool)), None)

@@ -266,7 +266,7 @@ class Bench:
         page.mouse.move(640, 400)
         for k in range(ROUNDS):
             x0 = float(self.session.scene.object(item.id).pose.position[0])
-            pose = self.session.scene.object(item.id).pose.moved((0.1 + 0.01 * k, 0.0, 0.0))
+            pose = self.session.scene.object(item.id).pose.move((0.1 + 0.01 * k, 0.0, 0.0))
             self._do(lambda p=pose: self.session.edit("move", lambda s: edits.move(s, item.id, p), by=self.page.client))
             page.wait_for_timeout(1500)  # it comes and rests
             used -= time.process_time()
@@ -315,7 +315,7 @@ class Bench:
         """Pictures a second while the published recipe runs, and how many show one object moved without another."""
         page = self.page.page
         lifted = {
-            o.id: o.pose.moved((0.05, 0.0, 0.08)) for o in self.session.scene.objects if not o.id.startswith("small")
+            o.id: o.pose.move((0.05, 0.0, 0.08)) for o in self.session.scene.objects if not o.id.startswith("small")
         }
         self._do(lambda: self.session.edit("lift", lambda s: edits.place(s, lifted)))
         self.page.settle()
@@ -342,7 +342,7 @@ class Bench:
         page.evaluate(TORN, [self.session.viewport.node_name(a.id), self.session.viewport.node_name(b.id)])
         for k in range(100):
             shift = 0.3 * np.sin(k / 5)
-            poses = {o.id: o.pose.moved((shift, 0.0, 0.0)) for o in items}
+            poses = {o.id: o.pose.move((shift, 0.0, 0.0)) for o in items}
             self.session.ui_thread.post(lambda p=poses: self.session.viewport.preview(p), key="preview")
             page.wait_for_timeout(50)
         torn, seen = page.evaluate("[window.__torn, window.__seen]")
@@ -357,7 +357,7 @@ class Bench:
         taken, used = [], time.process_time()
         for k in range(ROUNDS):
             self.page.page.wait_for_timeout(1500)  # until every tab has drawn what came before, finely
-            pose = self.session.scene.object(item.id).pose.moved((0.05 + 0.01 * k, 0.0, 0.0))
+            pose = self.session.scene.object(item.id).pose.move((0.05 + 0.01 * k, 0.0, 0.0))
             for tab in tabs:
                 tab.page.evaluate(
                     f"(what) => {{ window.__at = null; ({SHOWN})(what).then((at) => {{ window.__at = at; }}); }}",

@@ -115,7 +115,7 @@ def photo_of_door(scene: Scene, seed: int) -> tuple[TruthView, SceneObject]:
     studio = Studio(scene, LIBRARY)
     number = next(k for k, o in enumerate(scene.objects) if o.category == DOOR)
     views = (studio.view(c, SIZE, with_empty_room=False) for c in sample_cameras(scene, LIBRARY, seed, VIEWS, SIZE))
-    shown = (v for v in views if number in v.asked and v.visible_fraction[number] > LEAST_SEEN)
+    shown = (v for v in views if number in v.indices and v.visible_fraction[number] > LEAST_SEEN)
     view = next(v for v in shown if sides(v.scene.objects[number], v.scene, seen_walls(v)))
     return view, view.scene.objects[number]
 

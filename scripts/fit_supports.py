@@ -149,7 +149,7 @@ def _faces(scene: Scene, normal: Float[np.ndarray, "3"], front_deg: float | None
 def _true(view: TruthView, scene: Scene) -> tuple[Scene, dict[str, str]]:
     """The scene in the true world, and the built object of each true one."""
     there = align_to_truth(scene, view)
-    truth = [view.scene.objects[k] for k in view.asked]
+    truth = [view.scene.objects[k] for k in view.indices]
     return there, {t.id: m.id for t, m in zip(truth, match_all(truth, there), strict=True) if m is not None}
 
 
@@ -173,7 +173,7 @@ def _standings(group: str, view: TruthView, scene: Scene, noise: ObservationNois
     """How every object on the floor stands to every wall that was found."""
     there, names = _true(view, scene)
     floors = {p.id for p in view.scene.architecture.by_role("floor")}
-    for true in (view.scene.objects[k] for k in view.asked):
+    for true in (view.scene.objects[k] for k in view.indices):
         edge = view.scene.support_of(true.id)
         if true.id not in names or edge is None or edge.parent not in floors:
             continue

@@ -23,7 +23,7 @@ _keys: dict[int, Key] = {}
 """By a process's id."""
 _one_at_a_time = threading.Lock()
 _started, _close, _stop, _end = (
-    LimitedProcess._started, LimitedProcess.close, LimitedProcess.stop, LimitedProcess._end,
+    LimitedProcess._start, LimitedProcess.close, LimitedProcess.stop, LimitedProcess._end,
 )  # fmt: skip
 
 
@@ -34,7 +34,7 @@ def _key(process: LimitedProcess) -> Key:
 
 
 def started(self: LimitedProcess) -> limited._Messages:
-    """In place of `LimitedProcess._started`: an idle process of the same environment, or a new one."""
+    """In place of `LimitedProcess._start`: an idle process of the same environment, or a new one."""
     with _one_at_a_time:
         if self._process is None:
             for k, (key, process, messages) in enumerate(_idle):
@@ -67,7 +67,7 @@ def stop(self: LimitedProcess) -> None:
 
 def keep(patch: pytest.MonkeyPatch, *, kept: bool = True) -> None:
     """Keep processes, or start and end them as the program does."""
-    patch.setattr(LimitedProcess, "_started", started if kept else _started)
+    patch.setattr(LimitedProcess, "_start", started if kept else _started)
     patch.setattr(LimitedProcess, "close", close if kept else _close)
     patch.setattr(LimitedProcess, "stop", stop if kept else _stop)
 

@@ -60,7 +60,7 @@ class Tools:
 
     def open_room(self, project: str) -> dict[str, Any]:
         """Open a room: its objects, its planes, what is doubtful, and the page where a person sees it."""
-        return self._seen(self._api.get(f"v1/projects/{project}"))
+        return self._remember(self._api.get(f"v1/projects/{project}"))
 
     async def build(
         self,
@@ -79,7 +79,7 @@ class Tools:
             raise InputError("give either a photo or a text")
         if text:
             body = {"text": text, "author": AUTHOR}
-            return self._seen(await anyio.to_thread.run_sync(lambda: self._api.post("v1/projects/described", body)))
+            return self._remember(await anyio.to_thread.run_sync(lambda: self._api.post("v1/projects/described", body)))
         fields = {"author": AUTHOR}
         fields |= {"boxes": json.dumps(boxes)} if boxes else {}
         fields |= {"fov_deg": str(fov_deg)} if fov_deg is not None else {}
@@ -87,7 +87,7 @@ class Tools:
         path = Path(photo).expanduser()
         begun = await anyio.to_thread.run_sync(lambda: self._api.send_photo("v1/projects", path, fields, files))
         self._project = begun["project"]
-        await self._finished(ctx)
+        await self._outcome(ctx)
         return await anyio.to_thread.run_sync(lambda: self.open_room(self._room))
 
     def look(
@@ -98,7 +98,7 @@ class Tools:
         height: Annotated[int, Field(ge=64, le=2048)] = 672,
     ) -> Image:
         """A picture of the open room as it is now, from any view."""
-        self._seen(self._api.get(self._path()))
+        self._remember(self._api.get(self._path()))
         return Image(
             data=self._api.content(self._path("/picture"), view=view, ids=ids, width=width, height=height), format="png"
         )
@@ -114,7 +114,7 @@ class Tools:
         depth_m: Annotated[float, Field(gt=0, le=50)] = 1.0,
     ) -> dict[str, Any]:
         """Sizes, places, headings, supports, distances, free floor, and what the build was not sure of."""
-        scene = self._seen(self._api.get(self._path()))
+        scene = self._remember(self._api.get(self._path()))
         if about == "free floor":
             free: dict[str, Any] = self._api.get(self._path("/free-floor"), width_m=width_m, depth_m=depth_m)
             return free
@@ -137,7 +137,7 @@ class Tools:
         self._need_seen()
         given = TypeAdapter(list[Edit]).dump_python(edits, mode="json")
         body: dict[str, Any] = {"edits": given} if edits else {"words": words}
-        return self._changed(self._api.post(self._path("/edits"), {**body, "version": self._version, "author": AUTHOR}))
+        return self._update(self._api.post(self._path("/edits"), {**body, "version": self._version, "author": AUTHOR}))
 
     async def optimise(
         self,
@@ -152,7 +152,7 @@ class Tools:
         self._need_seen()
         body = {"version": self._version, "recipe": recipe, "only": only, "by_hand_too": by_hand_too, "author": AUTHOR}
         await anyio.to_thread.run_sync(lambda: self._api.post(self._path("/optimise"), body))
-        return self._changed(await self._finished(ctx))
+        return self._update(await self._outcome(ctx))
 
     def check(self) -> dict[str, Any]:
         """Whether people could use the room: collisions, floating, walkways, what is hard to reach; what to do."""
@@ -162,7 +162,7 @@ class Tools:
     def questions(self) -> dict[str, Any]:
         """What you or the person could tell of the room, the answer that makes most objects right first."""
         asked: dict[str, Any] = self._api.get(self._path("/questions"))
-        return self._changed(asked)
+        return self._update(asked)
 
     def answer(
         self,
@@ -172,15 +172,15 @@ class Tools:
         """Answer a question: what it asks is certain then, and only what depends on it changes. One step."""
         self._need_seen()
         body = {"version": self._version, "question": question, "answer": value, "author": AUTHOR}
-        return self._changed(self._api.post(self._path("/answers"), body))
+        return self._update(self._api.post(self._path("/answers"), body))
 
     def undo(self) -> dict[str, Any]:
         """Take back your own last step."""
-        return self._changed(self._api.post(self._path("/undo"), {"author": AUTHOR}))
+        return self._update(self._api.post(self._path("/undo"), {"author": AUTHOR}))
 
     def redo(self) -> dict[str, Any]:
         """Do again what you took back last."""
-        return self._changed(self._api.post(self._path("/redo"), {"author": AUTHOR}))
+        return self._update(self._api.post(self._path("/redo"), {"author": AUTHOR}))
 
     def export(
         self,
@@ -220,19 +220,19 @@ class Tools:
     def _path(self, rest: str = "") -> str:
         return f"v1/projects/{self._room}{rest}"
 
-    def _seen(self, scene: dict[str, Any]) -> dict[str, Any]:
+    def _remember(self, scene: dict[str, Any]) -> dict[str, Any]:
         self._project, self._version = scene["project"], scene["version"]
         return scene
 
     def _need_seen(self) -> None:
         if not self._version:
-            self._seen(self._api.get(self._path()))
+            self._remember(self._api.get(self._path()))
 
-    def _changed(self, answer: dict[str, Any]) -> dict[str, Any]:
+    def _update(self, answer: dict[str, Any]) -> dict[str, Any]:
         self._version = answer["version"]
         return answer
 
-    async def _finished(self, ctx: Context) -> dict[str, Any]:
+    async def _outcome(self, ctx: Context) -> dict[str, Any]:
         """How the room's long work ended; raises `InputError` where it failed."""
 
         def poll() -> dict[str, Any]:

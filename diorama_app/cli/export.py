@@ -170,13 +170,12 @@ def _simulate(a: argparse.Namespace, written: ExportScene, output: Path) -> tupl
         lines += [f"  {note}" for note in report.notes]
     if a.shake:
         shaken = stability(written, urdf=urdf, shake=EARTHQUAKE)
-        result["shake"] = {"fallen": [d.object_id for d in shaken.fallen], **asdict(EARTHQUAKE), **asdict(shaken)}
+        result["shake"] = {"fallen": [d.object_id for d in shaken.falls], **asdict(EARTHQUAKE), **asdict(shaken)}
         lines.append(
-            f"floor shaken by {EARTHQUAKE}: {len(shaken.fallen)} of {number_of(len(shaken.drifts))} fall ({what})"
+            f"floor shaken by {EARTHQUAKE}: {len(shaken.falls)} of {number_of(len(shaken.drifts))} fall ({what})"
         )
         lines += [
-            f"  {d.object_id} falls by {100 * d.fallen_m:.0f} cm, tips {d.tilted_deg:.0f} degrees"
-            for d in shaken.fallen
+            f"  {d.object_id} falls by {100 * d.fallen_m:.0f} cm, tips {d.tilted_deg:.0f} degrees" for d in shaken.falls
         ]
     return result, lines
 

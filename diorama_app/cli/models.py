@@ -61,7 +61,7 @@ def _list(a: argparse.Namespace) -> None:
             "size_mb": round(n.size_bytes / 1e6),
             "licence": n.licence,
             "sets": list(n.tiers),
-            "checked_by": n.checked_by,
+            "checked_by": n.check_words,
             "here": store.has(n),
         }
         for n in NETWORKS
@@ -104,7 +104,7 @@ def _try(store: ModelStore, network_ids: Sequence[str]) -> None:
     """Let networks without published checksums look at the example; those that do not work are deleted."""
     from diorama_core.models.manifest import network
 
-    if all(network(n).verified for n in network_ids):
+    if all(network(n).has_checksums for n in network_ids):
         return
     from diorama_app.projects.example import example_inputs
     from diorama_core.pipeline.network_check import rejected
@@ -132,7 +132,7 @@ def _asker(yes: bool) -> Any:
         for n in networks:
             source = n.repo or n.url
             print(
-                f"{n.title}: {n.licence}, {n.size_bytes / 1e6:.0f} MB, from {source} ({n.checked_by})", file=sys.stderr
+                f"{n.title}: {n.licence}, {n.size_bytes / 1e6:.0f} MB, from {source} ({n.check_words})", file=sys.stderr
             )
         if yes:
             return True

@@ -28,7 +28,7 @@ class Arrangements:
         """How many differ, at most `MOST`."""
         return min(MAX, max((len(offers) for offers in self._offers.values()), default=0))
 
-    def taken(self, rank: int, only: Collection[str] | None = None) -> Scene:
+    def take(self, rank: int, only: Collection[str] | None = None) -> Scene:
         """The scene with every unlocked object (or `only` these) in the `rank`-th of its shapes; sets change as one.
 
         An object with fewer shapes takes its last.
@@ -40,7 +40,7 @@ class Arrangements:
         return scene
 
     def is_taken(self, rank: int, only: Collection[str] | None = None) -> bool:
-        """Whether everything that `taken` would change is so already."""
+        """Whether everything that `take` would change is so already."""
         return all(c.shape_id == self.scene.object(i).shape_id for i, c in self._candidates_at(rank, only).items())
 
     def _candidates_at(self, rank: int, only: Collection[str] | None) -> dict[str, Candidate]:
@@ -78,4 +78,4 @@ def switch_arrangement(client: Client, rank: int, only: Collection[str] | None =
         raise EditRefused("no object has alternatives to arrange")
     label = _("arrangement {number}") if only is None else _("arrangement {number} for {names}")
     label = label.format(number=rank + 1, names=names_of(session.scene, only or ()))
-    session.edit(label, lambda s: Arrangements(s).taken(rank, only), by=client)
+    session.edit(label, lambda s: Arrangements(s).take(rank, only), by=client)

@@ -42,7 +42,7 @@ class Views:
             self._show_sphere(client)
             client.refresh()
             return
-        camera, photo = client.looked_through
+        camera, photo = client.viewpoint
         if camera is None and client.further_photo is not None:
             message = _("the camera of {photo} is not known yet; add the photo to the scene first")
             raise EditRefused(message.format(photo=client.photo_name))
@@ -58,14 +58,14 @@ class Views:
         client.refresh()
 
     def follow(self, client: Client) -> None:
-        """Call `turned` whenever a person turns this browser's view."""
+        """Call `turn` whenever a person turns this browser's view."""
 
         async def look(_: viser.CameraHandle) -> None:
-            client.post(lambda: self.turned(client), key="turned")
+            client.post(lambda: self.turn(client), key="turned")
 
         client.viser_client.camera.on_update(look)
 
-    def turned(self, client: Client) -> None:
+    def turn(self, client: Client) -> None:
         """Turn the 360 degree photo with the view of who looks around in it."""
         further = client.further_photo
         if further is None or further.T_world_sphere is None or not client.view.camera.through_photo:
@@ -78,7 +78,7 @@ class Views:
 
     def _show_sphere(self, client: Client) -> None:
         """The part of the 360 degree photo that is in view, behind the model, and over it as before."""
-        camera, photo = client.looked_through
+        camera, photo = client.viewpoint
         if camera is not None and photo is not None:
             with client.viser_client.atomic():
                 client.view.photo.show_backdrop(camera, photo.rgb, 2.0 * self._far())
@@ -96,7 +96,7 @@ class Views:
 
     def overlay(self, client: Client, opacity: float) -> None:
         """Overlay the photo on the model with the given opacity."""
-        camera, photo = client.looked_through
+        camera, photo = client.viewpoint
         if photo is None or camera is None:
             raise EditRefused("this scene has no photo to lay over the model; upload one in the Photo tab")
         if opacity > 0.0 and (client.plan or not client.view.camera.through_photo):

@@ -156,7 +156,7 @@ def set_base_position(client: Client, object_id: str, base: Float[np.ndarray, 3]
     offset = np.asarray(base, dtype=np.float64) - base_position(item)
     if np.abs(offset).max() < 5e-4:
         return
-    _move(client, item, item.pose.moved(offset), "at")
+    _move(client, item, item.pose.move(offset), "at")
 
 
 def set_yaw(client: Client, object_id: str, yaw_deg: float) -> None:

@@ -46,7 +46,7 @@ class WordEdits:
                 proposed = propose_edits(
                     request,
                     scene,
-                    session.offered,
+                    session.offer,
                     selected=client.selection,
                     language_model=settings,
                     progress=progress,

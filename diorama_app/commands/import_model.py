@@ -71,9 +71,9 @@ def _note_names(user_library: UserLibrary, found: Sequence[ModelSource], stem: s
     """Each model has its file's name until its owner gives another; one added again is deleted no more."""
     models = user_library.own_models
     for source in found:
-        models = models.restored(source.id)
+        models = models.restore(source.id)
         if source.id not in models.names:
-            models = models.named(source.id, Path(source.member).stem or stem)
+            models = models.rename(source.id, Path(source.member).stem or stem)
     user_library.keep_order(models)
 
 
@@ -147,4 +147,4 @@ def correct_model(client: Client, object_id: str, fix: Fix | None = None, *, cat
     except EditRefused:
         store.remove([record.id])
         raise
-    user_library.keep_order(user_library.own_models.superseded(item.shape_id, record.id))
+    user_library.keep_order(user_library.own_models.supersede(item.shape_id, record.id))

@@ -123,7 +123,7 @@ def put_opening(client: Client, category: str, wall_id: str, at: Float[np.ndarra
         EditRefused: see `with_opening`.
     """
     session = client.session
-    after, new_id = with_opening(session.scene, session.offered, category, wall_id, at)
+    after, new_id = with_opening(session.scene, session.offer, category, wall_id, at)
     session.edit(_inserting(category), lambda scene: after, by=client, selection=(new_id,))
 
 

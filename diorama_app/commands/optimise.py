@@ -16,7 +16,7 @@ from diorama_app.session.session import EditorSession
 from diorama_app.strings import _
 from diorama_core.artefacts import LayoutReport
 from diorama_core.editing.collisions import Collisions
-from diorama_core.editing.hand_placed import fixed_ids
+from diorama_core.editing.hand_placed import ids_to_keep
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rotations import rotation_from_vector, rotation_vector
 from diorama_core.layout.report import layout_figures
@@ -72,7 +72,7 @@ def optimise(
     start = session.scene
     if not start.objects:
         raise EditRefused("there is nothing to arrange; insert furniture first")
-    left = frozenset[str]() if only or by_hand_too else fixed_ids(start)
+    left = frozenset[str]() if only or by_hand_too else ids_to_keep(start)
     free = frozenset(only) or frozenset(o.id for o in start.objects if o.id not in left)
     if not free:
         raise EditRefused(

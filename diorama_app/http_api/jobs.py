@@ -278,11 +278,11 @@ class JobQueue:
             over = replace(job, state="failed", error=f"the program ended {job.tries} times while it built this")
         else:
             note_job(folder, running)
-            over = self._built(running, token)
+            over = self._build(running, token)
         note_job(folder, over)
         return over
 
-    def _built(self, job: Job, token: CancelToken) -> Job:
+    def _build(self, job: Job, token: CancelToken) -> Job:
         began = time.perf_counter()
 
         def report(event: ProgressEvent) -> None:

@@ -160,7 +160,7 @@ def edit(session: EditorSession, version: str, wanted: Sequence[Edit] | str, aut
         need_version(session, version)
 
     session.ui_thread.ask(check)
-    scene, library = session.scene, session.offered
+    scene, library = session.scene, session.offer
     if isinstance(wanted, str):
         proposed = propose_edits(wanted, scene, library, language_model=LmmSettings.from_environment())
     else:

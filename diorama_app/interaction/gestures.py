@@ -69,18 +69,18 @@ class Gestures:
             # A click on an object also arrives here, after the object's own event.
             ray = np.array(event.ray_origin), np.array(event.ray_direction)
             on_object = self._last_pick == event.screen_pos
-            client.post(lambda: self._clicked(*ray, on_object=on_object))
+            client.post(lambda: self._click(*ray, on_object=on_object))
 
         async def frame(event: viser.SceneRectSelectEvent) -> None:
             low, high = event.screen_min, event.screen_max
-            client.post(lambda: self._framed(low, high))
+            client.post(lambda: self._frame(low, high))
 
         scene.on_click()(click)
         scene.on_rect_select(modifier="shift")(frame)
 
     # -- pointing ---------------------------------------------------------------------------------------------
 
-    def picked(self, object_id: str, event: viser.SceneNodePointerEvent[Any]) -> None:
+    def pick(self, object_id: str, event: viser.SceneNodePointerEvent[Any]) -> None:
         """An object was clicked. Called from viser's event loop."""
         self._last_pick = event.screen_pos
         add, direction = event.modifier is not None, np.array(event.ray_direction)
@@ -97,7 +97,7 @@ class Gestures:
 
         self._client.post(pick)
 
-    def _clicked(self, origin: np.ndarray, direction: np.ndarray, *, on_object: bool) -> None:
+    def _click(self, origin: np.ndarray, direction: np.ndarray, *, on_object: bool) -> None:
         doing = self._client.doing
         if self._client.view.canvas.is_open:
             return
@@ -108,7 +108,7 @@ class Gestures:
         elif doing is None and not on_object:
             self._client.select_surface(surface_under(self._session.scene, origin, direction))
 
-    def _framed(self, low: tuple[float, float], high: tuple[float, float]) -> None:
+    def _frame(self, low: tuple[float, float], high: tuple[float, float]) -> None:
         client, camera = self._client, self._client.viser_client.camera
         if client.view.canvas.is_open:
             return
@@ -125,16 +125,16 @@ class Gestures:
 
     # -- dragging an object ------------------------------------------------------------------------------------
 
-    def dragged(self, object_id: str, event: viser.SceneNodeDragEvent[Any]) -> None:
+    def drag(self, object_id: str, event: viser.SceneNodeDragEvent[Any]) -> None:
         """An object is dragged. Called from viser's event loop."""
         phase, inverted = event.phase, event.modifier == "alt"
         grabbed, hand = np.array(event.start_position), np.array(event.end_position)
         self._client.post(
-            lambda: self._slid(object_id, phase, grabbed, hand, inverted),
+            lambda: self._slide(object_id, phase, grabbed, hand, inverted),
             key="slide" if phase == "update" else None,
         )
 
-    def _slid(self, object_id: str, phase: str, grabbed: np.ndarray, hand: np.ndarray, inverted: bool) -> None:
+    def _slide(self, object_id: str, phase: str, grabbed: np.ndarray, hand: np.ndarray, inverted: bool) -> None:
         client, session = self._client, self._session
         if phase == "start":
             if client.doing is not None or client.view.canvas.is_open or not session.scene.has_object(object_id):
@@ -262,7 +262,7 @@ class Gestures:
 
         async def drag(event: viser.TransformControlsEvent) -> None:
             wxyz, position, phase = np.array(event.target.wxyz), np.array(event.target.position), event.phase
-            self._client.post(lambda: self._turned(phase, wxyz, position), key="gizmo" if phase == "update" else None)
+            self._client.post(lambda: self._turn(phase, wxyz, position), key="gizmo" if phase == "update" else None)
 
         gizmo.on_update(drag)
         return gizmo
@@ -272,7 +272,7 @@ class Gestures:
             self._gizmo.remove()
             self._gizmo = self._gizmo_key = None
 
-    def _turned(self, phase: str, wxyz: np.ndarray, position: np.ndarray) -> None:
+    def _turn(self, phase: str, wxyz: np.ndarray, position: np.ndarray) -> None:
         item = self._client.selected
         if self._drag is None:
             if item is None or phase != "start":

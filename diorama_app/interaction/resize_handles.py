@@ -101,7 +101,7 @@ class SizeHandles:
             phase, inverted = event.phase, event.modifier == "alt"
             grabbed, hand = np.array(event.start_position), np.array(event.end_position)
             self._client.post(
-                lambda: self._pulled(handle, phase, grabbed, hand, inverted),
+                lambda: self._stretch(handle, phase, grabbed, hand, inverted),
                 key="stretch" if phase == "update" else None,
             )
 
@@ -114,7 +114,7 @@ class SizeHandles:
             node.remove()
         self._nodes, self._of = {}, None
 
-    def _pulled(self, handle: Handle, phase: str, grabbed: np.ndarray, hand: np.ndarray, inverted: bool) -> None:
+    def _stretch(self, handle: Handle, phase: str, grabbed: np.ndarray, hand: np.ndarray, inverted: bool) -> None:
         client, session = self._client, self._session
         item = client.selected
         if phase == "start":

@@ -73,12 +73,12 @@ class WallHandle:
 
         async def drag(event: viser.TransformControlsEvent) -> None:
             position, phase = np.array(event.target.position), event.phase
-            self._client.post(lambda: self._pulled(phase, position), key="wall" if phase == "update" else None)
+            self._client.post(lambda: self._move(phase, position), key="wall" if phase == "update" else None)
 
         node.on_update(drag)
         return node
 
-    def _pulled(self, phase: str, position: Any) -> None:
+    def _move(self, phase: str, position: Any) -> None:
         client, session = self._client, self._client.session
         if phase == "start" and self._shown is not None:
             self._pull = _Pull(self._shown, session.scene)

@@ -36,7 +36,7 @@ class AllProjects:
 
     def refresh(self) -> None:
         """Draw it while it is open."""
-        self._html.show(self._client.session.glances.get(self._key(), self._drawn) if self._open else "")
+        self._html.show(self._client.session.glances.get(self._key(), self._page) if self._open else "")
 
     def open(self) -> None:
         """Show it over the page; Esc closes it."""
@@ -53,7 +53,7 @@ class AllProjects:
         project = self._client.session.project
         return ("all projects", self._words, self._sort, "" if project is None else project.folder.name)
 
-    def _drawn(self) -> str:
+    def _page(self) -> str:
         folders = manage.recent_projects(self._client.session.projects_dir)
         names = {folder: manage.name_of(folder) for folder in folders}
         if self._sort == "oldest":
@@ -65,7 +65,7 @@ class AllProjects:
             f'<option value="{key}" {"selected" if key == self._sort else ""}>{text(_(words))}</option>'
             for key, words in SORTS.items()
         )
-        bin_of = "".join(_bin_row(place) for place in manage.binned_projects(self._client.session.projects_dir))
+        bin_of = "".join(_bin_row(place) for place in manage.projects_in_bin(self._client.session.projects_dir))
         bin_of = f"<details><summary>{text(_('Bin'))}</summary>{bin_of}</details>" if bin_of else ""
         title = text(_("All projects"))
         return (
@@ -117,7 +117,7 @@ class AllProjects:
 
     def _restore(self, address: str) -> None:
         session = self._client.session
-        place = next((p for p in manage.binned_projects(session.projects_dir) if manage.address_of(p) == address), None)
+        place = next((p for p in manage.projects_in_bin(session.projects_dir) if manage.address_of(p) == address), None)
         if place is None:
             raise EditRefused("that project no longer exists")
         folder = manage.out_of_bin(place, session.projects_dir)

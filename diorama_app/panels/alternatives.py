@@ -65,7 +65,7 @@ class Alternatives:
             show_value(self._words, "")
         self._options.show(self._choices(item))
         words = self._words.value.strip()
-        self._html.show(self._found(item, words) if words else self._own(item))
+        self._html.show(self._results(item, words) if words else self._own(item))
 
     def _choices(self, item: SceneObject) -> str:
         preferences = self._client.preferences
@@ -99,15 +99,15 @@ class Alternatives:
 
     def _similar(self, item: SceneObject) -> str:
         """For what was inserted by hand: the library's shapes of its category, most alike in size first."""
-        same = self._client.session.offered.in_category(item.category)
+        same = self._client.session.offer.in_category(item.category)
         size = np.sort(np.asarray(item.size_m))
         near = sorted(same, key=lambda s: float(np.abs(np.log(np.sort(np.asarray(s.size_m)) / size)).sum()))
         if len(near) < 2:
             return f"<p class='dim'>{text(_('The library has no other shape of this category. Search it above.'))}</p>"
         return self._grid([self._shape(item, s) for s in near[:SHOWN]])
 
-    def _found(self, item: SceneObject, words: str) -> str:
-        shapes = search(self._client.session.offered, words, k=SHOWN)
+    def _results(self, item: SceneObject, words: str) -> str:
+        shapes = search(self._client.session.offer, words, k=SHOWN)
         if not shapes:
             none = _("Nothing in the library matches “{words}”. Try another word.").format(words=words)
             return f'<p class="dim">{text(none)}</p>'

@@ -35,7 +35,7 @@ class DroppedFiles:
                 ask_which(client, name, dropped, lambda reading: self._act(name, content, reading))
                 return
             (reading,) = dropped.readings
-            unused = dropped.unused()
+            unused = dropped.unread()
             client.notice(f"{name}: {reading.words}" + (f". {unused}" if unused else ""))
             self._act(name, content, reading)
 

@@ -36,7 +36,7 @@ class PlacingGhost:
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
         self._html = gui.add_html("")
-        LiveHtml(gui, lambda action: client.post(lambda: self._dropped(action))).show(DROP)
+        LiveHtml(gui, lambda action: client.post(lambda: self._drop(action))).show(DROP)
         self._node: viser.GlbHandle | None = None
         self._shape_id: str | None = None
         self._told: str = ""
@@ -59,12 +59,12 @@ class PlacingGhost:
             self._told = state
             self._html.content = run_once(f"window.__dioGhost({state});")
 
-    def _dropped(self, action: Action) -> None:
+    def _drop(self, action: Action) -> None:
         """Put what is dragged onto the view where the ray of the pointer ends."""
         doing = self._client.doing
         if isinstance(doing, Placing):
             try:
-                origin, direction = np.array(action.parsed, dtype=np.float64).reshape(2, 3)
+                origin, direction = np.array(action.value, dtype=np.float64).reshape(2, 3)
             except (ValueError, TypeError) as error:
                 raise EditRefused("nothing can be put there; drop it onto the floor, a table or a wall") from error
             place_at(self._client, doing.shape_id, origin, direction)

@@ -27,7 +27,7 @@ def ask_which(client: Client, name: str, dropped: Dropped, then: Callable[[Readi
         then: called with the answer.
     """
     choices = [(_capital(reading.words), reading) for reading in dropped.readings]
-    _ask(client, _("What is {name}?").format(name=name), dropped.unused(), choices, then)
+    _ask(client, _("What is {name}?").format(name=name), dropped.unread(), choices, then)
 
 
 def ask_depth(client: Client, unknown: AmbiguousDepthError, then: Callable[[DepthAnswer], None]) -> None:

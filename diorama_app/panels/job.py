@@ -48,7 +48,7 @@ class JobStrip:
                 "lang": "en" if stage == status.message and language() != SOURCE_LANGUAGE else "",
                 "left": time_left(status, time.monotonic()),
                 "found": " · ".join(status.found[-FOUND_SHOWN:]),
-                "pause": (_("Resume") if run is not None and run.paused else _("Pause")) if can_pause else "",
+                "pause": (_("Resume") if run is not None and run.is_paused else _("Pause")) if can_pause else "",
                 "cancelling": status.cancelling,
             }
         )
@@ -64,7 +64,7 @@ class JobStrip:
 
         def toggle() -> None:
             if session.layout_run is not None:
-                pause(session, not session.layout_run.paused)
+                pause(session, not session.layout_run.is_paused)
 
         if action.do == "cancel":
             session.jobs.cancel()

@@ -63,7 +63,7 @@ class LibraryPanel:
         self._mine = OwnShelf(client)
         self._most = SHOWN
         self._words = gui.add_text(_("Search"), "", hint=_("For example: armchair, round table, blue"))
-        on_change(self._words, lambda v: client.post(self._searched, key="search"))
+        on_change(self._words, lambda v: client.post(self._search, key="search"))
         self._choices = LiveHtml(gui, self._act)
         UploadField(gui, client, _("Add a model file"), lambda name, content: import_model(client, name, content))
         self._where = LiveHtml(gui)
@@ -92,8 +92,8 @@ class LibraryPanel:
         if drawn == self._drawn and scene is self._drawn_of[0] and rooms == self._drawn_of[1]:
             return  # a hundred tiles, the same as before
         self._drawn, self._drawn_of, self._free = drawn, (scene, rooms), None
-        self._choices.show(self._drawn_choices(shapes))
-        matches = self._found(words, shapes)
+        self._choices.show(self._choice_html(shapes))
+        matches = self._find(words, shapes)
         on_own_shelf = self._filters.shelf == "own"
 
         def tile(shape: Shape) -> str:
@@ -113,7 +113,7 @@ class LibraryPanel:
         head = self._mine.head() if on_own_shelf else ""
         self._html.show(head + (below if tiles else f"<p class='dim'>{text(nothing)}</p>"))
 
-    def _drawn_choices(self, shapes: tuple[Shape, ...]) -> str:
+    def _choice_html(self, shapes: tuple[Shape, ...]) -> str:
         chosen = self._filters
         shelves = "".join(button(_(n), "shelf", s, title=_(t), on=chosen.shelf == s) for s, (n, t) in SHELVES.items())
         count = Counter(s.category for s in shapes)
@@ -134,7 +134,7 @@ class LibraryPanel:
             + "</div>"
         )
 
-    def _found(self, words: str, shapes: tuple[Shape, ...]) -> tuple[Shape, ...]:
+    def _find(self, words: str, shapes: tuple[Shape, ...]) -> tuple[Shape, ...]:
         session, preferences = self._client.session, self._client.preferences
         library = session.library
         if words:
@@ -192,7 +192,7 @@ class LibraryPanel:
             + "</div>"
         )
 
-    def _searched(self) -> None:
+    def _search(self) -> None:
         self._most = SHOWN
         self.refresh()
 

@@ -45,7 +45,7 @@ class Networks:
             )
         self._state: tuple[object, ...] = ()
         self._polled_at = 0.0
-        on_change(self._choice, lambda _: client.post(self._chosen))
+        on_change(self._choice, lambda _: client.post(self._choose))
         on_change(self._accept, lambda _: client.post(self.refresh))
         on_press(self._get, lambda: client.post(self._start))
 
@@ -73,7 +73,7 @@ class Networks:
         """Ids of missing networks whose licences were not accepted on this machine yet."""
         return frozenset(n.id for n in self._missing(store)) - store.accepted_licences()
 
-    def _chosen(self) -> None:
+    def _choose(self) -> None:
         show_value(self._accept, False)  # another set has other licences
         self.refresh()
 

@@ -53,7 +53,7 @@ class ObjectCard:
         self._html.show(empty if item is None else self._card(item))
 
     def _advice(self) -> str:
-        if self._client.session.unfinished:
+        if self._client.session.is_unbuilt:
             return f'<div class="card">{_(UNFINISHED)}</div>'
         if not self._client.session.scene.objects:
             return f'<div class="card">{_("The room is empty. Insert furniture from the <b>Library</b> tab.")}</div>'

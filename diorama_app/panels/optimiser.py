@@ -95,13 +95,13 @@ class Optimiser:
                 self._weights[name] = gui.add_slider(_(label), 0.0, 3.0, 0.1, 1.0, hint=hint)
                 on_change(self._weights[name], lambda _: client.post(self.refresh, key="weights"))
             self._even = gui.add_button(_("Reset weights"), color=QUIET_COLOUR, hint=_("Set all weights to 1"))
-        on_press(self._even, lambda: client.post(self._evened))
+        on_press(self._even, lambda: client.post(self._reset))
         self._start = gui.add_button(_("Optimise layout"), hint=_("One undo step; Cancel restores the layout"))
         self._start_some = gui.add_button(
             _("Optimise selection"), color=QUIET_COLOUR, hint=_("Move only the selection and what stands on it")
         )
-        on_press(self._start, lambda: self._started(some=False))
-        on_press(self._start_some, lambda: self._started(some=True))
+        on_press(self._start, lambda: self._begin(some=False))
+        on_press(self._start_some, lambda: self._begin(some=True))
         self._result = LiveHtml(gui, self._act)
         self._folder = gui.add_folder(None)
         self._plot: viser.GuiUplotHandle | None = None
@@ -131,7 +131,7 @@ class Optimiser:
         self._report.show("" if run is None else report_html(run))
         self._arrangements.show(self._others() if idle else "")
 
-    def _started(self, *, some: bool) -> None:
+    def _begin(self, *, some: bool) -> None:
         client = self._client
         name = client.preferences.recipe
 
@@ -141,7 +141,7 @@ class Optimiser:
 
         client.post(start)
 
-    def _tidied(self, *, by_hand_too: bool = False) -> None:
+    def _tidy(self, *, by_hand_too: bool = False) -> None:
         optimise(self._client.session, "feasible", by=self._client, by_hand_too=by_hand_too)
 
     def _others(self) -> str:
@@ -165,7 +165,7 @@ class Optimiser:
             f'<div class="bar tight">{whole}</div>{mixed}'
         )
 
-    def _evened(self) -> None:
+    def _reset(self) -> None:
         for slider in self._weights.values():
             show_value(slider, 1.0)
         self.refresh()
@@ -179,9 +179,9 @@ class Optimiser:
         elif action.do == "back worse":
             client.post(lambda: put_back_worse(client))
         elif action.do == "tidy":
-            client.post(self._tidied)
+            client.post(self._tidy)
         elif action.do == "tidy all":
-            client.post(lambda: self._tidied(by_hand_too=True))
+            client.post(lambda: self._tidy(by_hand_too=True))
         elif action.do == "back":
             client.post(lambda: put_back(client))
         elif action.do == "keep":

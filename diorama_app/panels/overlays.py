@@ -48,7 +48,7 @@ class Overlays:
         preferences, scene, photo = client.preferences, session.scene, session.photo
         is_first = client.further_photo is None
         shown = client.view.camera.through_photo and is_first and photo is not None and scene.camera is not None
-        masks, planes = preferences.masks and self._outlines.found is not None, preferences.planes
+        masks, planes = preferences.masks and self._outlines.objects is not None, preferences.planes
         trial = client.trial_camera
         if not shown or not (masks or planes or trial is not None):
             key: object = None
@@ -67,7 +67,7 @@ class Overlays:
         from diorama_app.viewport.overlays import draw_ground, draw_planes, mask_picture, visible_objects
 
         session, k = self._client.session, camera.intrinsics
-        items = visible_objects(session.scene, self._outlines.found or ()) if masks else ()
+        items = visible_objects(session.scene, self._outlines.objects or ()) if masks else ()
         picture = mask_picture((k.width, k.height), items, self._client.selection)
         if planes:
             draw_planes(picture, session.scene.architecture.planes, camera)
@@ -93,7 +93,7 @@ class Compare:
     def refresh(self) -> None:
         """Offer it where there is a photo to compare with; show all or nothing where something else asked."""
         canvas = self._client.view.canvas
-        if None in self._client.looked_through or canvas.is_open or self._client.plan:
+        if None in self._client.viewpoint or canvas.is_open or self._client.plan:
             self._drawn = None
             self._html.show("")
             return

@@ -79,11 +79,11 @@ class OwnShelf:
         if action.do == "switch" and action.arg == "in builds":
             library.keep_order(OwnModels(models.names, models.folders, models.deleted, not models.in_builds))
         elif action.do == "model-name" and library.has_own(shape_id):
-            library.keep_order(models.named(shape_id, words))
+            library.keep_order(models.rename(shape_id, words))
         elif action.do == "model-folder" and library.has_own(shape_id):
-            library.keep_order(models.filed(shape_id, words))
+            library.keep_order(models.file(shape_id, words))
         elif action.do == "model-restore" and library.has_own(action.arg):
-            library.keep_order(models.restored(action.arg))
+            library.keep_order(models.restore(action.arg))
         elif action.do == "model-delete" and library.has_own(action.arg):
             self._delete(library, models, action.arg)
         else:
@@ -96,7 +96,7 @@ class OwnShelf:
         name = models.names.get(shape_id) or library.shape(shape_id).caption
 
         def again() -> None:
-            library.keep_order(library.own_models.restored(shape_id))
+            library.keep_order(library.own_models.restore(shape_id))
             client.refresh()
 
         client.offer(_("{name} is deleted.").format(name=name), _("Undo"), again)

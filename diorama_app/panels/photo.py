@@ -125,7 +125,7 @@ class PhotoPanel:
 
         def ask(unknown: AmbiguousDepthError | SphericalPhotoError) -> None:
             if not isinstance(unknown, SphericalPhotoError):
-                ask_depth(client, unknown, lambda answer: self.begin(upload.answered(answer)))
+                ask_depth(client, unknown, lambda answer: self.begin(upload.answer(answer)))
                 return
             check_all_round(upload)
             self.begin(replace(upload, sphere=True))
@@ -145,7 +145,7 @@ class PhotoPanel:
 
     def refresh(self) -> None:
         """Draw what is known of the photo."""
-        client, inputs, idle = self._client, self._client.marked, self._session.jobs.status is None
+        client, inputs, idle = self._client, self._client.inputs, self._session.jobs.status is None
         further = client.further_photo
         if inputs is None or client.selected_box is None or client.selected_box >= len(inputs.boxes):
             client.selected_box = None
@@ -159,7 +159,7 @@ class PhotoPanel:
         enable(self._find, idle and finds)
         show_value(self._at_once, client.preferences.build_at_once)
         self._no_detector.show(about if inputs is not None else "")
-        proposed = 0 if inputs is None else self._boxes.proposed(inputs)
+        proposed = 0 if inputs is None else self._boxes.proposal_count(inputs)
         if inputs is not None and idle and (proposed or inputs.photo.equirectangular):
             self._build_if_awaited(inputs)
         self._bar.show("" if inputs is None else photo_bar(client, inputs, proposed))
@@ -253,10 +253,10 @@ class PhotoPanel:
             if action.do in acts:
                 acts[action.do]()
             elif action.arg.isdigit() and action.do == "drop":
-                boxes.happened(Deleted(int(action.arg)))
+                boxes.handle(Deleted(int(action.arg)))
             elif action.arg.isdigit() and action.do == "mark":
                 index = int(action.arg)
-                boxes.happened(Selected(None if client.selected_box == index else index))
+                boxes.handle(Selected(None if client.selected_box == index else index))
 
         client.post(do)
 
@@ -275,7 +275,7 @@ class PhotoPanel:
     def _build_if_awaited(self, inputs: Inputs) -> None:
         """Build what was found in a photo that was just uploaded; where nothing is sure, a person marks it."""
         session, project = self._session, self._session.project
-        if project is None or project == self._seen_for or not session.unfinished:
+        if project is None or project == self._seen_for or not session.is_unbuilt:
             return
         self._seen_for = project
         whole = inputs.photo.equirectangular  # its views are searched by the build

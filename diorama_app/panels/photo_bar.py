@@ -74,7 +74,7 @@ def _may_be_bent_back(client: Client, inputs: Inputs) -> bool:
 def no_scene_card(client: Client) -> str:
     """What can be done where the view is empty, since the photo was put away before a scene was built."""
     inputs, session = client.session.inputs, client.session
-    if inputs is None or not session.unfinished or client.view.canvas.is_open or session.jobs.status is not None:
+    if inputs is None or not session.is_unbuilt or client.view.canvas.is_open or session.jobs.status is not None:
         return ""
     count = len(inputs.boxes)
     message = plural(

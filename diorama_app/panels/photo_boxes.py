@@ -56,9 +56,9 @@ class PhotoBoxes:
         canvas.show_boxes(inputs.boxes, index, likely)
         if canvas.is_open:
             canvas.show_proposals(self._proposals(inputs))
-            canvas.show_mask(None if index is None else self._suggested(inputs).outline(inputs.boxes[index].box))
+            canvas.show_mask(None if index is None else self._suggest(inputs).outline(inputs.boxes[index].box))
 
-    def _suggested(self, inputs: Inputs) -> Suggestions:
+    def _suggest(self, inputs: Inputs) -> Suggestions:
         for known in self._suggestions:
             if known.photo is inputs.photo:
                 return known
@@ -74,11 +74,11 @@ class PhotoBoxes:
         return new
 
     def _likely(self, inputs: Inputs, index: int) -> tuple[str, ...]:
-        return self._suggested(inputs).names([b.box for b in inputs.boxes], index)
+        return self._suggest(inputs).names([b.box for b in inputs.boxes], index)
 
     def _proposals(self, inputs: Inputs) -> tuple[LabelledBox, ...]:
         """Likely objects that nobody marked or turned down yet."""
-        return tuple(b for b in self._suggested(inputs).boxes() if same_object(inputs.boxes, b.box) is None)
+        return tuple(b for b in self._suggest(inputs).boxes() if same_object(inputs.boxes, b.box) is None)
 
     def proposals(self) -> tuple[LabelledBox, ...]:
         """Likely objects of the scene's own photo that nobody marked or turned down yet."""
@@ -91,13 +91,13 @@ class PhotoBoxes:
             known.dismiss(proposal.box)
         self._client.refresh()
 
-    def proposed(self, inputs: Inputs) -> int:
+    def proposal_count(self, inputs: Inputs) -> int:
         """Number of proposals that are shown."""
         return len(self._proposals(inputs)) if self._client.view.canvas.is_open else 0
 
     def accept_all(self) -> None:
         """Make boxes of all proposals; their names stay guesses until somebody names them."""
-        inputs = self._client.marked
+        inputs = self._client.inputs
         if inputs is None:
             return
         proposed = tuple(replace(label_box(b.box, b.label), guessed=True) for b in self._proposals(inputs))
@@ -113,12 +113,12 @@ class PhotoBoxes:
 
     def sure(self, inputs: Inputs) -> tuple[LabelledBox, ...]:
         """Those of the proposals that a build uses though nobody looked at them."""
-        sure = {b.box for b in self._suggested(inputs).sure()}
+        sure = {b.box for b in self._suggest(inputs).sure()}
         return tuple(replace(b, guessed=True) for b in self._proposals(inputs) if b.box in sure)
 
     def open(self) -> None:
         """Put the photo on the canvas, to be marked; raises `InputError` where there is none."""
-        inputs = self._client.marked
+        inputs = self._client.inputs
         if inputs is None:
             raise InputError("there is no photo yet; upload one first")
         self._put(inputs)
@@ -128,13 +128,13 @@ class PhotoBoxes:
         client = self._client
         client.view.canvas.open(
             inputs.photo.rgb,
-            lambda event: client.post(lambda: self.happened(event)),
+            lambda event: client.post(lambda: self.handle(event)),
             names=NAMES,
         )
 
-    def happened(self, event: Event) -> None:
+    def handle(self, event: Event) -> None:
         """Something was done on the photo."""
-        inputs, client = self._client.marked, self._client
+        inputs, client = self._client.inputs, self._client
         if inputs is None:
             return
         index = getattr(event, "index", None)
@@ -145,7 +145,7 @@ class PhotoBoxes:
             case Drawn(box):
                 photo = inputs.photo
                 marked = [b.box for b in inputs.boxes]
-                self._suggested(inputs).name(box, marked, lambda row: client.post(lambda: self._drawn(photo, row)))
+                self._suggest(inputs).name(box, marked, lambda row: client.post(lambda: self._name_box(photo, row)))
             case Reshaped(i, box):
                 now = replace(inputs.boxes[i], box=box)
                 self._annotate(_("change the box of {label}").format(label=now.label), with_box_at(inputs, i, now))
@@ -161,7 +161,7 @@ class PhotoBoxes:
                 client.refresh()
                 photo = inputs.photo
                 marked = [b.box for b in inputs.boxes]
-                self._suggested(inputs).suggest(x, y, marked, lambda box: client.post(lambda: self._meant(photo, box)))
+                self._suggest(inputs).suggest(x, y, marked, lambda box: client.post(lambda: self._take_box(photo, box)))
             case Accepted(i, label):
                 self._mark(inputs, label_box(rows[i].box, label or rows[i].label))
             case Dismissed(i):
@@ -173,9 +173,9 @@ class PhotoBoxes:
                 client.view.canvas.close()
                 client.refresh()
 
-    def _meant(self, photo: Photo, box: LabelledBox | None) -> None:
+    def _take_box(self, photo: Photo, box: LabelledBox | None) -> None:
         """What was clicked on is known: it becomes a box, or the one that is there already is selected."""
-        inputs = self._client.marked
+        inputs = self._client.inputs
         if inputs is None or inputs.photo is not photo:
             return  # another project was opened meanwhile
         known = None if box is None else same_object(inputs.boxes, box.box)
@@ -187,9 +187,9 @@ class PhotoBoxes:
             self._client.selected_box = known
             self._client.refresh()
 
-    def _drawn(self, photo: Photo, box: LabelledBox) -> None:
+    def _name_box(self, photo: Photo, box: LabelledBox) -> None:
         """The likeliest name of a box that was drawn is known."""
-        inputs = self._client.marked
+        inputs = self._client.inputs
         if inputs is not None and inputs.photo is photo:
             self._mark(inputs, label_box(box.box, box.label))
 
@@ -204,7 +204,7 @@ class PhotoBoxes:
         self._client.annotate(label, inputs)
 
     def _rename(self, index: int, name: str) -> None:
-        inputs, words = self._client.marked, " ".join(name.split())
+        inputs, words = self._client.inputs, " ".join(name.split())
         if inputs is None or not words or inputs.boxes[index].label == words:
             return
         now = label_box(inputs.boxes[index].box, words)

@@ -71,7 +71,7 @@ class PhotoCorrection:
         elif action.do == "box":
             self._of = object_id
             client.view.canvas.open(
-                self._photo(), lambda event: client.post(lambda: self._drawn(object_id, event)), "one box"
+                self._photo(), lambda event: client.post(lambda: self._handle(object_id, event)), "one box"
             )
             item = client.session.scene.object(object_id)
             if item.box_px is not None:
@@ -79,7 +79,7 @@ class PhotoCorrection:
         elif action.do == "outline":
             self._outline, self._of = start_outline(client, object_id), object_id
             client.view.canvas.open(
-                self._photo(), lambda event: client.post(lambda: self._drawn(object_id, event)), "points"
+                self._photo(), lambda event: client.post(lambda: self._handle(object_id, event)), "points"
             )
             client.view.canvas.show_mask(self._outline.mask)
         elif action.do == "use" and self._outline is not None:
@@ -89,14 +89,14 @@ class PhotoCorrection:
             self._close()
         client.refresh()
 
-    def _drawn(self, object_id: str, event: Event) -> None:
+    def _handle(self, object_id: str, event: Event) -> None:
         """Something was done on the photo."""
         match event:
             case Drawn(box) if self._outline is None:
                 self._close()
                 redraw_box(self._client, object_id, box)
             case Pointed(x, y, is_part) if self._outline is not None:
-                self._outline = self._outline.clicked(x, y, part=is_part)
+                self._outline = self._outline.click(x, y, part=is_part)
                 self._client.view.canvas.show_mask(self._outline.mask)
             case Finished() if self._outline is not None:
                 use_outline(self._client, object_id, self._outline)

@@ -39,7 +39,7 @@ class PhotoStrip:
         self._client, self._views = client, views
         self._pictures: dict[int, tuple[object, str]] = {}
         self._html = LiveHtml(gui, self._act)
-        self._upload = UploadField(gui, client, _("Add a photo of this room"), self._received, mime_type="image/*")
+        self._upload = UploadField(gui, client, _("Add a photo of this room"), self._receive, mime_type="image/*")
         self._upload.show_if(False)
 
     def refresh(self) -> None:
@@ -83,7 +83,7 @@ class PhotoStrip:
             known = self._pictures[id(rgb)] = (rgb, uri)
         return known[1]
 
-    def _received(self, name: str, content: bytes) -> None:
+    def _receive(self, name: str, content: bytes) -> None:
         client = self._client
         client.session.reader.read(
             Upload(content, name), client.id, client.post, lambda read: take_photo(client, name, read.inputs)
@@ -102,7 +102,7 @@ class PhotoStrip:
     def _choose(self, name: str | None) -> None:
         client = self._client
         client.choose_photo(name)
-        camera = client.looked_through[0]
+        camera = client.viewpoint[0]
         if camera is not None:
             self._views.photo(client)
         else:

@@ -33,14 +33,14 @@ class Physics:
         scene = self._client.session.scene
         wanted = (item, scene) if item is not None and unfolded else None
         if self._of is None or wanted is None or self._of[0] is not wanted[0] or self._of[1] is not wanted[1]:
-            self._of, self._table = wanted, "" if wanted is None else self._measured(*wanted)
+            self._of, self._table = wanted, "" if wanted is None else self._describe(*wanted)
             if wanted is None:
                 self._client.view.show_colliders(None, np.zeros((0, 3), dtype=int))
         what = _("mass, friction, joints and colliders, as they are exported to simulators")
         fold = fold_button(_("Physics"), "fold", what, unfolded=unfolded)
         self._html.show("" if item is None else fold + self._table)
 
-    def _measured(self, item: SceneObject, scene: Scene) -> str:
+    def _describe(self, item: SceneObject, scene: Scene) -> str:
         """The table of one object; draws its colliders."""
         from diorama_core.export.bodies import hull_faces  # manifold3d; opening a project does without it
         from diorama_core.export.colliders import body_of, world_parts

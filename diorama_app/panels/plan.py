@@ -101,12 +101,12 @@ class Plan:
         if not client.plan:
             self._tell("null")
             return
-        scene = self._seen()
+        scene = self._scene()
         self._outlines.look_for(scene, lambda: client.post(self.refresh, key="plan"))
         self._picture.refresh()
         self._tell(json.dumps(self._plan_data(scene), separators=(",", ":")))
 
-    def _seen(self) -> Scene:
+    def _scene(self) -> Scene:
         """The scene; of a home the storey of what is shown, the lowest where everything is."""
         scene = self._client.session.scene
         if not scene.rooms:
@@ -119,7 +119,7 @@ class Plan:
         return {r.storey for r in rooms if r.id in shown} or {min((r.storey for r in rooms), default=0)}
 
     def _everything(self) -> list[list[float]]:
-        scene = self._seen()
+        scene = self._scene()
         visible = [o for o in scene.objects if not o.hidden]
         return _bounds(room_lines(scene.architecture.planes, visible, scene), [o.corners_world[:, :2] for o in visible])
 
@@ -174,7 +174,7 @@ class Plan:
     def _do(self, action: Action) -> None:
         client, session = self._client, self._client.session
         try:
-            arg = action.parsed
+            arg = action.value
             match action.do:
                 case "select":
                     self._select(arg[0], add=bool(arg[1]))
@@ -204,7 +204,7 @@ class Plan:
                 case "door" | "window":
                     put_opening(client, action.do, str(arg[0]), np.array([float(arg[1]), float(arg[2])]))
                 case "picture":
-                    self._picture.placed(arg)
+                    self._picture.place(arg)
                 case "room":
                     outline, storey = np.array(arg, dtype=np.float64).reshape(-1, 2), min(self._storeys())
                     session.edit(_("draw the room"), lambda s: draw_room_of_home(s, outline, storey), by=client)

@@ -41,7 +41,7 @@ class PicturesBelow:
         self._client, self._bounds = client, bounds
         self._told: tuple[object, ...] = ()
         self._uuid = hidden_upload(
-            gui, client, _("Picture of a plan"), self._received, mime_type="image/*,application/pdf"
+            gui, client, _("Picture of a plan"), self._receive, mime_type="image/*,application/pdf"
         )
         self._teller = gui.add_html("")
 
@@ -60,7 +60,7 @@ class PicturesBelow:
             about["picture"] = {"url": url, "size": picture.size, "at": picture.at, "metres": picture.metres}
         self._teller.content = run_once(f"window.__dioPlanTools.given({json.dumps(about)})")
 
-    def placed(self, place: Any) -> None:
+    def place(self, place: Any) -> None:
         """The page moved, scaled or removed the picture.
 
         Raises:
@@ -84,7 +84,7 @@ class PicturesBelow:
             raise EditRefused("no project is open")
         return session.project
 
-    def _received(self, name: str, content: bytes) -> None:
+    def _receive(self, name: str, content: bytes) -> None:
         project, client = self._project(), self._client
 
         def read() -> None:

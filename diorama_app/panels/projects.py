@@ -72,9 +72,9 @@ class Projects:
         notes = "".join(f"<p>{library_text(note)}.</p>" for note in session.notes[:6])
         title = f"<h4>{text(_('How this scene was made'))}</h4>"
         self._notes.show(f'{title}<div class="card">{notes}</div>' if notes else "")
-        self._list.show(session.glances.get("projects", self._listed))
+        self._list.show(session.glances.get("projects", self._cards))
 
-    def _listed(self) -> str:
+    def _cards(self) -> str:
         """The projects that were changed last."""
         session = self._client.session
         rows = "".join(self._row(folder) for folder in project_care.recent_projects(session.projects_dir)[:RECENT])

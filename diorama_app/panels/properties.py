@@ -84,14 +84,14 @@ class Properties:
             self._why.show("")
             return
         show_value(self._name, item.label)
-        show_value(self._colour, self._shown_colour(item))
+        show_value(self._colour, self._visible_colour(item))
         opens = self._client.session.shapes.can_open(item.shape_id)
         self._own.show((_opening(item) if opens else "") + _surface(item))
         self._why.show(_why(strongest(self._client.session.reasons, item.id)))
 
-    def _shown_colour(self, item: SceneObject) -> tuple[int, int, int]:
+    def _visible_colour(self, item: SceneObject) -> tuple[int, int, int]:
         """The paint of an object, or else the main material's colour from the photo, or else the shape's own."""
-        seen = next((m.colour for m in item.shown_photo_materials if m.main), None)
+        seen = next((m.colour for m in item.visible_materials if m.main), None)
         colour = item.colour if item.colour is not None else seen
         if colour is not None:
             r, g, b = (round(255 * c) for c in colour)
@@ -146,7 +146,7 @@ class Properties:
             else ""
         )
 
-    def _typed(self, do: str, axis: str, words: str) -> None:
+    def _enter(self, do: str, axis: str, words: str) -> None:
         """Something was written into one of the fields; what cannot be used goes back to what it was."""
         client = self._client
         object_id = client.need_selected()
@@ -178,7 +178,7 @@ class Properties:
     def _act(self, action: Action) -> None:
         client = self._client
         if action.do in ("place", "size", "turn", "gap"):
-            client.post(lambda: self._typed(action.do, *action.pair))
+            client.post(lambda: self._enter(action.do, *action.pair))
         elif action.do == "unit":
             unit = next((u for u in UNITS if u == action.pair[1]), None)
             client.post(lambda: client.change_preferences(unit=unit or client.preferences.unit))

@@ -115,7 +115,7 @@ class Review:
             shape = candidate_of(self._client.session.library, item, choice.value).shape_id
             picture = self._client.session.thumbnails.html(shape, (item.colour, item.finish))
         elif item is not None and question.subject == "front":
-            picture = self._turned(item, choice.value)
+            picture = self._preview(item, choice.value)
         label = library_text(choice.label)
         if question.subject == "scale":
             length = format_length(float(choice.value), self._client.preferences.unit)
@@ -128,7 +128,7 @@ class Review:
             f"{picture}<b>{number} · {label}</b><small>{100 * choice.probability:.0f} %</small></button>"
         )
 
-    def _turned(self, item: SceneObject, turn: str) -> str:
+    def _preview(self, item: SceneObject, turn: str) -> str:
         """The object as the photo's camera would see it after a turn; nothing without a camera."""
         session, camera = self._client.session, self._client.session.scene.camera
         if camera is None:

@@ -78,7 +78,7 @@ class StartPage:
             self._open, self._client.dialog = False, None
         by_itself = "data-auto" if session.greets else ""
         self._opener.show(f'<button type="button" id="dio-start-open" {by_itself} data-do="begin" hidden></button>')
-        self._html.show(self._drawn() if self._open else "")
+        self._html.show(self._page() if self._open else "")
 
     def open(self) -> None:
         """Show it over the page; Esc closes it."""
@@ -118,7 +118,7 @@ class StartPage:
         elif action.do == "words":
             self._words = action.pair[1]
         elif action.do == "length":
-            self._typed(*action.pair)
+            self._enter(*action.pair)
         elif action.do == "describe":
             describe_room(client, self._words)
             self.close()
@@ -135,21 +135,21 @@ class StartPage:
         elif action.do == "project":
             self._visit(action.arg)
 
-    def _typed(self, which: str, words: str) -> None:
+    def _enter(self, which: str, words: str) -> None:
         if which not in LENGTHS:
             return
         try:
             length = parse_length(words, self._client.preferences.unit)
         except InputError:
             self._refused[which] = words
-            self._html.show(self._drawn(), again=True)
+            self._html.show(self._page(), again=True)
             raise
         width, depth, height = (
             length if name == which else old for name, old in zip(LENGTHS, self._lengths_m, strict=True)
         )
         self._lengths_m = (width, depth, height)
         if self._refused.pop(which, None) is not None:
-            self._html.show(self._drawn(), again=True)
+            self._html.show(self._page(), again=True)
 
     def _visit(self, name: str) -> None:
         session = self._client.session
@@ -161,7 +161,7 @@ class StartPage:
         project = Project.open(folder)
         session.visit(self._client, project, _("Opened {name}.").format(name=project.name))
 
-    def _drawn(self) -> str:
+    def _page(self) -> str:
         unit = self._client.preferences.unit
         invalid = ' aria-invalid="true"'
         fields = "".join(

@@ -28,9 +28,9 @@ class Supports:
         ways = [_(LIES), _(HANGS)]
         self._relation = gui.add_dropdown(_("How"), ways, visible=False, hint=_("Kind of support"))
         self._wall = gui.add_dropdown(_("Against"), [_(NO_WALL)], visible=False, hint=_("The wall it stands against"))
-        on_change(self._parent, lambda name: client.post(lambda: self._chosen(name)))
-        on_change(self._relation, lambda name: client.post(lambda: self._related(name)))
-        on_change(self._wall, lambda name: client.post(lambda: self._adhered(name)))
+        on_change(self._parent, lambda name: client.post(lambda: self._choose(name)))
+        on_change(self._relation, lambda name: client.post(lambda: self._relate(name)))
+        on_change(self._wall, lambda name: client.post(lambda: self._adhere(name)))
 
     def refresh(self) -> None:
         """Show the supporter of the selected object."""
@@ -52,7 +52,7 @@ class Supports:
         here = next((name for name, wall in self._walls.items() if wall == against), no_wall)
         show_options(self._wall, (no_wall, *self._walls), here)
 
-    def _chosen(self, name: str) -> None:
+    def _choose(self, name: str) -> None:
         client = self._client
         object_id = client.need_selected()
         try:
@@ -63,13 +63,13 @@ class Supports:
         finally:
             self.refresh()  # a refused choice reverts to the current support
 
-    def _related(self, name: str) -> None:
+    def _relate(self, name: str) -> None:
         try:
             editing.set_relation(self._client, self._client.need_selected(), name == _(HANGS))
         finally:
             self.refresh()
 
-    def _adhered(self, name: str) -> None:
+    def _adhere(self, name: str) -> None:
         try:
             editing.set_adherence(self._client, self._client.need_selected(), self._walls.get(name))
         finally:

@@ -46,13 +46,13 @@ class Surfaces:
             self._client.view.show_surface(plane)
         if plane is not None and not self._samples.content:
             self._samples.content = _sample_styles()
-        self._html.show("" if plane is None else self._drawn(plane))
+        self._html.show("" if plane is None else self._card(plane))
 
     def _plane(self) -> Plane | None:
         chosen, scene = self._client.surface, self._client.session.scene
         return scene.plane(chosen) if chosen is not None and scene.has_plane(chosen) else None
 
-    def _drawn(self, plane: Plane) -> str:
+    def _card(self, plane: Plane) -> str:
         from diorama_core.appearance.surface_finish import KINDS, USUAL  # OpenCV; opening a project does without it
         from diorama_core.geometry.planes import plane_rectangle
 
@@ -112,9 +112,9 @@ class Surfaces:
         elif action.do == "turn":
             self._set(replace(finish, direction_rad=float(np.radians(float(action.arg)))))
         elif action.do in ("scale", "direction"):
-            self._typed(finish, action)
+            self._enter(finish, action)
 
-    def _typed(self, finish: SurfaceFinish, action: Action) -> None:
+    def _enter(self, finish: SurfaceFinish, action: Action) -> None:
         """A number was written; what cannot be used goes back to what it was."""
         try:
             number = _number(action.pair[1])
@@ -124,7 +124,7 @@ class Surfaces:
                 self._set(replace(finish, direction_rad=float(np.radians(number % 360.0))))
         finally:
             plane = self._plane()
-            self._html.show("" if plane is None else self._drawn(plane), again=True)
+            self._html.show("" if plane is None else self._card(plane), again=True)
 
     def _set(self, finish: SurfaceFinish | None, merge: str = "") -> None:
         finish_surfaces(self._client, finish, all_walls=self._all_walls, merge=merge)

@@ -27,8 +27,8 @@ class UnsavedChanges:
         session = self._client.session
         if session.project is not self._of:
             self._of = session.project
-            self._found = None if session.project is None else session.autosave.recovery.left_behind(session.project)
-        self._html.show(self._trouble() + self._offer() + self._interrupted())
+            self._found = None if session.project is None else session.autosave.recovery.find_unsaved(session.project)
+        self._html.show(self._trouble() + self._offer() + self._build_card())
 
     def _trouble(self) -> str:
         session = self._client.session
@@ -54,7 +54,7 @@ class UnsavedChanges:
             + "</div></div>"
         )
 
-    def _interrupted(self) -> str:
+    def _build_card(self) -> str:
         session = self._client.session
         if not session.interrupted or session.jobs.status is not None:
             return ""

@@ -74,7 +74,7 @@ class Dropped:
     """Likeliest first."""
     left_out: tuple[str, ...] = ()
 
-    def unused(self) -> str:
+    def unread(self) -> str:
         """What is not read, for people; empty where everything is."""
         more = f" and {len(self.left_out) - MAX_NAMED} more" if len(self.left_out) > MAX_NAMED else ""
         return f"Left out: {', '.join(self.left_out[:MAX_NAMED])}{more}" if self.left_out else ""

@@ -35,7 +35,7 @@ class SharedDoor:
     ids: tuple[str, str]
 
     @property
-    def turned(self) -> SharedDoor:
+    def reverse(self) -> SharedDoor:
         """This door, named from the other room."""
         return SharedDoor(self.rooms[::-1], self.ids[::-1])
 
@@ -92,7 +92,7 @@ def join_rooms(rooms: Mapping[str, Path], doors: Sequence[SharedDoor], output: P
     with ProjectLock(project.folder, "diorama build"):
         scene, left = Project.open(rooms[first]).load_scene(), list(doors)
         while left:
-            ways = [d if d.rooms[0] in ids else d.turned for d in left]
+            ways = [d if d.rooms[0] in ids else d.reverse for d in left]
             way = next((d for d in ways if d.rooms[0] in ids and d.rooms[1] not in ids), None)
             if way is None:
                 break
@@ -106,7 +106,7 @@ def join_rooms(rooms: Mapping[str, Path], doors: Sequence[SharedDoor], output: P
                 raise EditRefused(f"{here} and {there}: {error}") from error
             project.save_textures(pictures)
             scene, ids[there] = made.scene, made.ids
-            left = [d for d in left if d not in (way, way.turned)]
+            left = [d for d in left if d not in (way, way.reverse)]
         alone = sorted({name for door in left for name in door.rooms} - set(ids))
         if alone:
             raise InputError(f"{FILE}: no door leads from {first} to {', '.join(alone)}; name one that does")

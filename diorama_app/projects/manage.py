@@ -119,7 +119,7 @@ def to_bin(folder: Path, projects_dir: Path) -> Path:
     return place
 
 
-def binned_projects(projects_dir: Path) -> tuple[Path, ...]:
+def projects_in_bin(projects_dir: Path) -> tuple[Path, ...]:
     """Folders of projects in the bin, the last deleted first."""
     places = [p for p in (projects_dir / BIN).glob("*") if (p / "project.json").exists()]
     return tuple(sorted(places, key=lambda p: p.name.rpartition("-")[2], reverse=True))

@@ -202,7 +202,7 @@ def _pose(photo: FolderPhoto, inputs: Inputs, posed: PosedPhoto, *, stored: bool
         raise InputError(
             f"{photo.photo.name} has {width} x {height} pixels, its camera {k.width} x {k.height}: another picture?"
         )
-    camera = Camera(k.scaled(width, height), posed.camera.T_world_camera)
+    camera = Camera(k.resize(width, height), posed.camera.T_world_camera)
     straight = straightened(inputs, camera.intrinsics, lens)
     return PosedInputs(replace(straight, intrinsics=camera.intrinsics), camera)
 

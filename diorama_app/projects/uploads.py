@@ -33,7 +33,7 @@ class Upload:
     bend: float | None = None
     """The photo's distortion as `Photo.straightened` has it, 0 to leave it; None where its lines are to say."""
 
-    def answered(self, answer: DepthAnswer) -> Upload:
+    def answer(self, answer: DepthAnswer) -> Upload:
         """The upload with what a person says of its depth."""
         return replace(self, depth_scale=answer.per_metre, depth_kind=answer.kind)
 

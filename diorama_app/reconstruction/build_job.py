@@ -161,10 +161,10 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
         with _note(project):
             warnings = project.info().get("warnings", ())
             part = progress.part(0.0, alone)
-            built = build_project(project, inputs, session.offered, warnings=warnings, progress=part, save_scene=False)
+            built = build_project(project, inputs, session.offer, warnings=warnings, progress=part, save_scene=False)
             again = None
             if joined:
-                again = _with_others(project, built, before, others, session.offered, progress.part(alone, 1.0))
+                again = _with_others(project, built, before, others, session.offer, progress.part(alone, 1.0))
         made = NewScene.of(built, with_found_boxes(inputs, built), warnings, again)
         session.autosave.save_soon(project, made.scene)  # whatever is open by then
         session.ui_thread.post(
@@ -187,7 +187,7 @@ def build_whole_room(session: EditorSession, sphere: Inputs, title: str = "") ->
         EditRefused: the project is read-only.
     """
     session.need_writable()
-    project, before, library = session.project, session.scene, session.offered
+    project, before, library = session.project, session.scene, session.offer
     if project is None:
         raise EditRefused("no project is open")
 

@@ -92,7 +92,7 @@ def _pull(client: Client, missing: Sequence[Network], accepted: frozenset[str], 
 
 def _try(fetched: Sequence[Network], progress: Progress) -> None:
     """Let networks without published checksums look at the example; those that do not work are deleted."""
-    if all(n.verified for n in fetched):
+    if all(n.has_checksums for n in fetched):
         return
     from diorama_app.projects.example import example_inputs
     from diorama_core.pipeline.network_check import rejected
@@ -111,7 +111,7 @@ def find_furniture(client: Client) -> None:
 
 
 def _photo(client: Client) -> Photo:
-    inputs = client.marked
+    inputs = client.inputs
     if inputs is None:
         raise InputError("there is no photo yet; upload one first")
     return inputs.photo
@@ -127,7 +127,7 @@ def _find(client: Client, photo: Photo, progress: Progress) -> None:
 
 
 def _put_boxes(client: Client, photo: Photo, boxes: Sequence[LabelledBox]) -> None:
-    inputs = client.marked
+    inputs = client.inputs
     if inputs is None or inputs.photo is not photo:
         return  # somebody opened another project here meanwhile
     marked = with_boxes_added(inputs, boxes)

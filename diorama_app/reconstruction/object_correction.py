@@ -102,7 +102,7 @@ def _reconstruct(
         result = reconstruct_object(
             scene,
             inputs,
-            session.offered,
+            session.offer,
             box,
             object_id,
             mask=find_outline(inputs, box.box) if drawn is None else drawn,

@@ -123,7 +123,7 @@ def _join_first(client: Client, inputs: Inputs) -> None:
     """Find where the first photo of a scanned room was taken, and bring what it shows into the scene."""
     session = client.session
     session.need_writable()
-    project, scene, library = session.project, session.scene, session.offered
+    project, scene, library = session.project, session.scene, session.offer
     if project is None:
         raise EditRefused("no project is open")
     client.view.canvas.close()
@@ -175,7 +175,7 @@ def _join(
     from diorama_core.multiview.registration import camera_of, photos_of_scene
     from diorama_core.pipeline.presets import stages_for
 
-    library = client.session.offered
+    library = client.session.offer
     known = [p for p in photos_of_scene(scene, inputs, photos) if p.name != photo.name]
     if photo.camera is None:
         photo = replace(photo, camera=camera_of(photo, known, scene, library, progress.part(0.0, 0.3)))

@@ -19,7 +19,7 @@ class PhotoOutlines:
         self._found: tuple[DetectedObject, ...] = ()
 
     @property
-    def found(self) -> tuple[DetectedObject, ...] | None:
+    def objects(self) -> tuple[DetectedObject, ...] | None:
         """What was outlined in the photo that is open; None while that is not known."""
         return self._found if self._of is not None and self._of.photo is self._session.photo else None
 
@@ -40,7 +40,7 @@ class PhotoOutlines:
 
             runner = Runner(project.stages_folder)
             outlined, _unused = with_usable_networks(
-                lambda store: stages_for("auto", inputs, session.offered, store=store),
+                lambda store: stages_for("auto", inputs, session.offer, store=store),
                 lambda stages: evaluate(stages, {"given": inputs}, ("objects",), runner, progress)["objects"],
             )
 

@@ -64,7 +64,7 @@ def open_example(client: Client, kind: str) -> None:
         from diorama_core.appearance.surface_finish import with_finish_pictures
 
         progress.report(0.1, "choosing and placing furniture")
-        scene, made = with_finish_pictures(example_room(room, session.offered), {})
+        scene, made = with_finish_pictures(example_room(room, session.offer), {})
         progress.report(0.8, "saving the project")
         notes = ("an example, furnished by rules",)
         project = begin_with_scene(session.projects_dir, _(room.name), scene, made, notes, session.library)

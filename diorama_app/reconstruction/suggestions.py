@@ -67,12 +67,12 @@ class Suggestions:
         new = tuple(box for box in boxes if box not in self._seen)
         if new:
             self._ask(new, lambda: self._look_at(new))
-        return () if any(box not in self._seen for box in new) else self._ranked(boxes)[index]
+        return () if any(box not in self._seen for box in new) else self._rank(boxes)[index]
 
     def boxes(self) -> tuple[LabelledBox, ...]:
         """Likely objects with their names, best first; nothing yet where they are still worked out."""
         if self._boxes is None:
-            self._ask(None, self._proposed)
+            self._ask(None, self._propose)
         return tuple(b for b in self._boxes or () if b.box not in self._dismissed)
 
     def dismiss(self, box: Box) -> None:
@@ -106,7 +106,7 @@ class Suggestions:
 
         def tell() -> None:
             try:
-                then(self._clicked(x, y, marked))
+                then(self._click(x, y, marked))
             except UnavailableError as error:
                 log.warning("nothing is suggested: %s", error)
                 then(None)
@@ -158,7 +158,7 @@ class Suggestions:
         rows = own_recogniser().name(self.photo.rgb, np.array(boxes, dtype=float).reshape(-1, 4))
         self._seen.update(zip(boxes, rows, strict=True))
 
-    def _ranked(self, boxes: Sequence[Box]) -> list[tuple[str, ...]]:
+    def _rank(self, boxes: Sequence[Box]) -> list[tuple[str, ...]]:
         from diorama_core.models.recogniser import own_recogniser
         from diorama_core.perception.foundation.proposals import ranked_names
 
@@ -180,7 +180,7 @@ class Suggestions:
                 self._known = ()
         return self._known
 
-    def _proposed(self) -> None:
+    def _propose(self) -> None:
         from diorama_core.models.recogniser import own_recogniser
         from diorama_core.perception.foundation.proposals import LIKELY, MOST_SHOWN, OwnDetection, joined_boxes
         from diorama_core.progress import Progress
@@ -196,7 +196,7 @@ class Suggestions:
             self._outline = box, EmbeddedMasks().segment_box(self.photo.rgb, box)[0]
         self._asked.discard(("outline", box))
 
-    def _clicked(self, x: float, y: float, marked: Sequence[Box]) -> LabelledBox | None:
+    def _click(self, x: float, y: float, marked: Sequence[Box]) -> LabelledBox | None:
         from diorama_core.models.recogniser import own_recogniser
         from diorama_core.perception.foundation.proposals import clickable, clicked_box
 
@@ -213,7 +213,7 @@ class Suggestions:
     def _likeliest(self, box: Box, marked: Sequence[Box]) -> str:
         boxes = (*marked, box)
         self._look_at(tuple(b for b in boxes if b not in self._seen))
-        return self._ranked(boxes)[-1][0]
+        return self._rank(boxes)[-1][0]
 
 
 def drop_marked(detections: Detections, x: float, y: float, marked: Sequence[Box]) -> Detections:

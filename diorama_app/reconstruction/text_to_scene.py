@@ -70,7 +70,7 @@ def creation(session: EditorSession, words: str) -> Callable[[Progress], tuple[P
             partial(_compose, prompt, model=model) if endpoint is None else partial(_draw_and_build, prompt, endpoint)
         )
         with new_project(session.projects_dir, prompt.replace(".", " "), name=name, library=session.library) as project:
-            what = make(project, session.offered, progress=progress)
+            what = make(project, session.offer, progress=progress)
         return project, what
 
     return create

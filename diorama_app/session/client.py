@@ -136,13 +136,13 @@ class Client:
         return next((p for p in self.session.further_photos if p.name == self.photo_name), None)
 
     @property
-    def marked(self) -> Inputs | None:
+    def inputs(self) -> Inputs | None:
         """The chosen photo with everything that is said of it; None without one."""
         further = self.further_photo
         return self.session.inputs if further is None else further.inputs
 
     @property
-    def looked_through(self) -> tuple[Camera | None, Photo | None]:
+    def viewpoint(self) -> tuple[Camera | None, Photo | None]:
         """The chosen photo and its camera in the scene, where they are known."""
         further = self.further_photo
         if further is None:

@@ -116,12 +116,12 @@ class Document:
 
     def next_undo(self, is_mine: IsMine = anybodys) -> Entry | None:
         """What `undo` would take back; None when there is nothing."""
-        index = self._undone_next(is_mine)
+        index = self._next_undo(is_mine)
         return None if index is None else self.history.entries[index]
 
     def next_redo(self, is_mine: IsMine = anybodys) -> Entry | None:
         """What `redo` would do again; None when there is nothing."""
-        index = self._redone_next(is_mine)
+        index = self._next_redo(is_mine)
         return None if index is None else self.history.entries[index]
 
     def undo(self, is_mine: IsMine = anybodys) -> Entry:
@@ -130,7 +130,7 @@ class Document:
         Raises:
             EditRefused: there is none, or others have changed the same things since.
         """
-        index = self._undone_next(is_mine)
+        index = self._next_undo(is_mine)
         if index is None:
             mine = self.history.can_undo
             raise EditRefused("there is nothing of yours to undo" if mine else "there is nothing to undo")
@@ -146,7 +146,7 @@ class Document:
         Raises:
             EditRefused: there is none, or others have changed the same things since.
         """
-        index = self._redone_next(is_mine)
+        index = self._next_redo(is_mine)
         if index is None:
             mine = self.history.can_redo
             raise EditRefused("there is nothing of yours to redo" if mine else "there is nothing to redo")
@@ -154,11 +154,11 @@ class Document:
         self._changes += 1
         return self.history.current
 
-    def _undone_next(self, is_mine: IsMine) -> int | None:
+    def _next_undo(self, is_mine: IsMine) -> int | None:
         entries = self.history.entries
         return next((k for k in range(self.history.cursor, 0, -1) if is_mine(entries[k])), None)
 
-    def _redone_next(self, is_mine: IsMine) -> int | None:
+    def _next_redo(self, is_mine: IsMine) -> int | None:
         entries = self.history.entries
         return next((k for k in range(self.history.cursor + 1, len(entries)) if is_mine(entries[k])), None)
 

@@ -42,7 +42,7 @@ class LayoutRun:
         self.going.set()
 
     @property
-    def paused(self) -> bool:
+    def is_paused(self) -> bool:
         """Whether the run is paused."""
         return not self.going.is_set()
 

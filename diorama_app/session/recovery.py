@@ -96,10 +96,10 @@ class Recovery:
             except OSError as error:
                 log.warning("%s cannot be removed (%s)", path, error)
 
-    def left_behind(self, project: Project) -> Unsaved | None:
+    def find_unsaved(self, project: Project) -> Unsaved | None:
         """The newest change of an earlier session that the project's own file does not have."""
         saved = _scene_digest(project)
-        candidates = [u for u in self._unsaved_of_others(project) if u.is_settled and u.follows(saved)]
+        candidates = [u for u in self._others(project) if u.is_settled and u.follows(saved)]
         newest = max(candidates, key=lambda u: u.at, default=None)
         return None if newest is None or _digest(newest.path) == saved else newest
 
@@ -109,7 +109,7 @@ class Recovery:
         Only for who has the project's lock: another's unsaved changes are being saved.
         """
         saved = _scene_digest(project)
-        for unsaved in self._unsaved_of_others(project):
+        for unsaved in self._others(project):
             if unsaved.is_settled and not unsaved.follows(saved):
                 unsaved.discard()
         for path in self._folder.glob("*.json"):
@@ -119,7 +119,7 @@ class Recovery:
         remove_leftovers(self._folder)
         remove_leftovers(project.folder)
 
-    def _unsaved_of_others(self, project: Project) -> list[Unsaved]:
+    def _others(self, project: Project) -> list[Unsaved]:
         unsaved = []
         for path in self._folder.glob(f"{_place(project)}-*.json"):
             with contextlib.suppress(OSError):  # its session may be removing it

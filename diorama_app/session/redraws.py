@@ -102,7 +102,7 @@ class JobReports:
         self._on_start, self._on_progress, self._on_end = on_start, on_progress, on_end
         self._reported_at = 0.0
 
-    def changed(self, status: JobStatus) -> None:
+    def update(self, status: JobStatus) -> None:
         """The status of the running job differs. May be called from any thread."""
         now = time.monotonic()
         begins = status.fraction == 0.0
@@ -110,7 +110,7 @@ class JobReports:
             self._reported_at = now
             self._ui_thread.post(self._on_start if begins else self._on_progress, key="job")
 
-    def ended(self, outcome: Outcome) -> None:
+    def end(self, outcome: Outcome) -> None:
         """The job is over. May be called from any thread."""
         self._ui_thread.post(lambda: self._on_end(outcome))
 

@@ -100,13 +100,13 @@ class EditorSession(SharedDocument):
         reports = JobReports(
             self.ui_thread, on_start=self.refresh_panels, on_progress=self._refresh_job, on_end=self._job_ended
         )
-        self.jobs = Jobs(reports.changed, reports.ended)
+        self.jobs = Jobs(reports.update, reports.end)
         self.greets = False
         """Whether browsers that come here see the start page first."""
         self.interrupted = False
         """Whether a build of this project was under way when the program ended."""
         self.reader = Reader()
-        self.checker = Checker(library, lambda badges: self.ui_thread.post(lambda: self._badged(badges)))
+        self.checker = Checker(library, lambda badges: self.ui_thread.post(lambda: self._show_badges(badges)))
         self.records = ShapeRecords(library)
         self.thumbnails = Thumbnails(library, self.records)
         self.shapes = ShapeBytes(library, light=low_graphics)
@@ -114,11 +114,11 @@ class EditorSession(SharedDocument):
         self.view = SharedView(self, self.shapes, self.preparer)
 
     @property
-    def offered(self) -> ShapeLibrary:
+    def offer(self) -> ShapeLibrary:
         """The library as builds and words choose from it: without people's own models unless they asked for that."""
         return offer_shapes(self.library)
 
-    def changed(self, by: ConnectedClient | None = None) -> None:
+    def save_and_show(self, by: ConnectedClient | None = None) -> None:
         """The document changed: save and show it. Nothing that is shown can keep it from being saved."""
         if self.project is not None:
             self.saving.save_soon(self.project, self.document, self.library)
@@ -131,7 +131,7 @@ class EditorSession(SharedDocument):
         for watcher in tuple(self.watchers):
             watcher()
 
-    def _badged(self, badges: Problems) -> None:
+    def _show_badges(self, badges: Problems) -> None:
         self.badges = badges
         self.refresh_panels()
 
@@ -181,14 +181,14 @@ class EditorSession(SharedDocument):
                 self.notice_all(line, "bad")
 
     @property
-    def unfinished(self) -> bool:
+    def is_unbuilt(self) -> bool:
         """Whether the project has a photo and nothing was built of it yet."""
         empty = not self.scene.objects and not self.scene.architecture.planes
         return self.inputs is not None and empty and self.project is not None and not self.project.has_scene
 
     def _show_where_left(self, client: ConnectedClient) -> None:
         """An unfinished project opens where its boxes are drawn."""
-        if self.unfinished:
+        if self.is_unbuilt:
             client.open_tab("Photo")
             client.open_board()
 
@@ -211,7 +211,7 @@ class EditorSession(SharedDocument):
 
     # -- people -----------------------------------------------------------------------------------------------
 
-    def joined(self, viser_client: viser.ClientHandle) -> None:
+    def join(self, viser_client: viser.ClientHandle) -> None:
         """A browser connected (or reloaded): the shared scene is replayed to it by the server, its panels are made."""
         self._clients_so_far += 1
         client = self.clients[viser_client.client_id] = self._make_client(self, viser_client, self._clients_so_far)
@@ -235,7 +235,7 @@ class EditorSession(SharedDocument):
 
         viser_client.camera.on_update(look)
 
-    def left(self, viser_client: viser.ClientHandle) -> None:
+    def leave(self, viser_client: viser.ClientHandle) -> None:
         """A browser went away."""
         client = self.clients.pop(viser_client.client_id, None)
         if client is not None:

@@ -32,7 +32,7 @@ class SharedDocument(ABC):
         self.clients: dict[int, ConnectedClient] = {}
 
     @abstractmethod
-    def changed(self, by: ConnectedClient | None = None) -> None:
+    def save_and_show(self, by: ConnectedClient | None = None) -> None:
         """The document changed: save and show it."""
 
     @abstractmethod
@@ -140,7 +140,7 @@ class SharedDocument(ABC):
         for client in self.clients.values():
             who = f"{author}: " if author and client is not by else ""
             client.to_say = (f"{who}{label[:1].upper()}{label[1:]}", by is None or client is by)
-        self.changed(by)
+        self.save_and_show(by)
 
     @property
     def read_only(self) -> str:
@@ -184,4 +184,4 @@ class SharedDocument(ABC):
             person.selection = selection or person.selection
         for client in self.clients.values():
             client.to_say = (message, False)
-        self.changed(person)
+        self.save_and_show(person)

@@ -71,7 +71,7 @@ class SharedView:
         """
         self._shown = shown
         self._preparer = preparer
-        self.viewport = Viewport(shown.server, shapes, pick=self._picked, drag=self._dragged, later=self._replace_later)
+        self.viewport = Viewport(shown.server, shapes, pick=self._pick, drag=self._drag, later=self._replace_later)
         self.redraws = Redraws(shown.ui_thread, lambda client_id: client_id in shown.clients)
         self.on_photo_camera: Callable[[Any, str | None], None] | None = None
         """Given who clicked, and the name of the further photo, or None."""
@@ -143,12 +143,12 @@ class SharedView:
             message = _("{what} could not be drawn; your work is saved. See the server's log.")
             self._shown.notice_all(message.format(what=_(what)[:1].upper() + _(what)[1:]), "bad")
 
-    def _picked(self, object_id: str, event: viser.SceneNodePointerEvent) -> None:
-        """Called from viser's event loop, as `_dragged` is."""
+    def _pick(self, object_id: str, event: viser.SceneNodePointerEvent) -> None:
+        """Called from viser's event loop, as `_drag` is."""
         if self.on_pick is not None:
             self.on_pick(object_id, event)
 
-    def _dragged(self, object_id: str, event: viser.SceneNodeDragEvent) -> None:
+    def _drag(self, object_id: str, event: viser.SceneNodeDragEvent) -> None:
         if self.on_drag is not None:
             self.on_drag(object_id, event)
 

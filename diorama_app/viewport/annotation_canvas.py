@@ -127,7 +127,7 @@ class AnnotationCanvas:
         self._size = (1, 1)
         self._shown: tuple[UInt8[np.ndarray, "h w 3"], Mode] | None = None
         self._names: tuple[str, ...] = ()
-        sender = LiveHtml(gui, self._received)
+        sender = LiveHtml(gui, self._receive)
         sender.show('<button type="button" id="dio-canvas-send" style="display:none" tabindex="-1"></button>')
         self._photo, self._boxes, self._proposals, self._mask, self._lines = (_Told(gui) for _ in range(5))
         self._outline: Bool[np.ndarray, "h w"] | None = None
@@ -220,7 +220,7 @@ class AnnotationCanvas:
         self._lines.tell({"lines": []})
         self._outline = None
 
-    def _received(self, action: Action) -> None:
+    def _receive(self, action: Action) -> None:
         on_event = self._on_event
         event = _event(action, self._size)
         if on_event is not None and event is not None:
@@ -244,7 +244,7 @@ class _Told:
 def _event(action: Action, size: tuple[int, int]) -> Event | None:
     """What a page says was done; None for what is no event."""
     try:
-        arg = action.parsed
+        arg = action.value
         match action.do:
             case "draw":
                 return Drawn(_box(arg, size))

@@ -94,7 +94,7 @@ def _small(obj: Seen, size: tuple[int, int], scale: float) -> UInt8[np.ndarray, 
 
 def draw_planes(picture: UInt8[np.ndarray, "h w 4"], planes: Iterable[Plane], camera: Camera) -> None:
     """Draw the edges of planes into a picture of the photo's proportions, as the photo's camera sees them."""
-    scaled = camera.intrinsics.scaled(picture.shape[1], picture.shape[0])
+    scaled = camera.intrinsics.resize(picture.shape[1], picture.shape[0])
     for plane in planes:
         for start, end in zip(plane.polygon, np.roll(plane.polygon, -1, axis=0), strict=True):
             _draw_line(picture, camera, scaled, np.stack([start, end]), (*PLANE_COLOURS[plane.role], 255))
@@ -102,7 +102,7 @@ def draw_planes(picture: UInt8[np.ndarray, "h w 4"], planes: Iterable[Plane], ca
 
 def draw_ground(picture: UInt8[np.ndarray, "h w 4"], camera: Camera, floor_m: float) -> None:
     """Draw a grid on the floor as a camera would see it, half a metre wide, in front of its feet."""
-    scaled = camera.intrinsics.scaled(picture.shape[1], picture.shape[0])
+    scaled = camera.intrinsics.resize(picture.shape[1], picture.shape[0])
     ahead = camera.T_world_camera[:3, 2] * (1.0, 1.0, 0.0)
     ahead = ahead / max(float(np.linalg.norm(ahead)), 1e-9)
     across = np.array([ahead[1], -ahead[0], 0.0])

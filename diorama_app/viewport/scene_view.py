@@ -287,4 +287,4 @@ def _is_seen(before: Pose, after: Pose, item: SceneObject) -> bool:
 
 def _appearance(item: SceneObject) -> Appearance:
     scale = relative_scale(item.pose.scale)
-    return (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale, item.open_share)
+    return (item.shape_id, item.colour, item.finish, item.visible_materials, scale, item.open_share)

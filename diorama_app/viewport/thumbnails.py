@@ -81,13 +81,13 @@ class Thumbnails:
             nothing: Future[bytes | None] = Future()
             nothing.set_result(None)
             return nothing
-        return self._worker.submit(self._made, *asked)
+        return self._worker.submit(self._make, *asked)
 
     def stop(self) -> None:
         """End the thread; pictures that wait are not made."""
         self._worker.shutdown(wait=False, cancel_futures=True)
 
-    def _made(self, shape_id: str, paint: Paint) -> bytes | None:
+    def _make(self, shape_id: str, paint: Paint) -> bytes | None:
         from diorama_core.render.thumbnails import thumbnail  # only once pictures are asked for
 
         if paint != OWN:

@@ -72,7 +72,7 @@ class Action:
     """Shift, Ctrl or Cmd was held."""
 
     @property
-    def parsed(self) -> Any:
+    def value(self) -> Any:
         """The argument as a JSON value, its strings cleaned; raises `ValueError` where it is none."""
         try:
             return clean_strings(json.loads(self.arg))
@@ -83,7 +83,7 @@ class Action:
     def pair(self) -> tuple[str, str]:
         """Two words in one argument: (argument, new value) of a change, (dragged, onto) of a drop."""
         try:
-            first, second = self.parsed
+            first, second = self.value
         except (ValueError, TypeError):
             return "", ""
         return str(first), str(second)

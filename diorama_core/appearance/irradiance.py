@@ -52,7 +52,7 @@ def irradiance_map(scene: Scene, camera: Camera, library: ShapeLibrary) -> Float
     """
     k = camera.intrinsics
     shrink = min(1.0, SETTINGS.longest_px / max(k.width, k.height))
-    small = k.scaled(max(8, round(k.width * shrink)), max(8, round(k.height * shrink)))
+    small = k.resize(max(8, round(k.width * shrink)), max(8, round(k.height * shrink)))
     view = PinholeView(Camera(small, camera.T_world_camera))
     world = scene_world(scene, library)
     count = len(scene.objects)

@@ -57,7 +57,7 @@ def wall_shade(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject
         objects: What stands before the walls.
         scene: With the photo's camera.
     """
-    walls = [p for p in scene.architecture.by_role("wall") if p.seen]
+    walls = [p for p in scene.architecture.by_role("wall") if p.is_seen]
     if scene.camera is None or len(walls) < 2:
         return None
     height, width = rgb.shape[:2]

@@ -62,7 +62,7 @@ def surface_view(
     world = pose.apply(vertices).astype(np.float32)
     rays = PinholeView(camera).rays(np.stack([x, y], axis=-1))
     hits = RayScene(world, faces).first_hits(rays)
-    is_hit, triangle = hits.found, hits.triangle[hits.found]
+    is_hit, triangle = hits.is_hit, hits.triangle[hits.is_hit]
     weights = np.concatenate([1 - hits.barycentric.sum(axis=-1, keepdims=True), hits.barycentric], axis=-1)[is_hit]
     slot = np.full(is_hit.shape, -1, np.int8)
     slot[is_hit] = owner[triangle]

@@ -76,7 +76,7 @@ def containing_room(
     if objects_measured:
         scene = _doubted(scene, standing)
     for wall in scene.architecture.by_role("wall"):
-        if not wall.seen:
+        if not wall.is_seen:
             scene = _given_way(scene, wall.id, standing)
         scene = _drawn_out(scene, wall.id)
     prints = [p for o in standing if len(p := _footprint(scene, o)) >= 3]
@@ -99,7 +99,7 @@ def without_floor_behind_walls(scene: Scene, known: Plane) -> Scene:
     trimmed = here
     for wall in scene.architecture.by_role("wall"):
         drawn = added ^ _area_behind_wall(wall)
-        if wall.seen and not any((drawn ^ _section(p)).area() > SETTINGS.behind_share * _area(p) for p in standing):
+        if wall.is_seen and not any((drawn ^ _section(p)).area() > SETTINGS.behind_share * _area(p) for p in standing):
             trimmed = trimmed - drawn
     if here.area() - trimmed.area() < SETTINGS.min_area_m2:
         return scene
@@ -221,7 +221,7 @@ def _doubted(scene: Scene, standing: Sequence[SceneObject]) -> Scene:
 
     The front of furniture that nobody marked was taken for such a wall, or it ends before the object.
     """
-    doubted = {p.id for p in scene.architecture.planes if p.seen and any(_is_behind(o, p) for o in standing)}
+    doubted = {p.id for p in scene.architecture.planes if p.is_seen and any(_is_behind(o, p) for o in standing)}
     if not doubted:
         return scene
     planes = (replace(p, confidence=SETTINGS.doubted) if p.id in doubted else p for p in scene.architecture.planes)
@@ -271,7 +271,7 @@ def _drawn_out(scene: Scene, wall_id: str) -> Scene:
     along = wall.polygon @ level
     needed = np.concatenate([o.corners_world @ level for o in hanging])
     polygon = wall.polygon.copy()
-    seen = [other for other in scene.architecture.by_role("wall") if other.seen]
+    seen = [other for other in scene.architecture.by_role("wall") if other.is_seen]
     for end, reach in (
         (along.min(), needed.min() - SETTINGS.margin_m),
         (along.max(), needed.max() + SETTINGS.margin_m),
@@ -300,7 +300,7 @@ def _footprint(scene: Scene, item: SceneObject) -> Float[np.ndarray, "k 2"]:
     """What an object covers of the floor before the walls that were seen, counter-clockwise in plan."""
     polygon = np.column_stack([_box_footprint(item), np.zeros(4)])
     for wall in scene.architecture.by_role("wall"):
-        if wall.seen and _wall_gap_m(item, wall) < 0.0:
+        if wall.is_seen and _wall_gap_m(item, wall) < 0.0:
             level = wall.normal * [1.0, 1.0, 0.0]
             polygon = clip_polygon(polygon, level, wall.offset)
     return polygon[:, :2]

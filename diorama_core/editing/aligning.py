@@ -111,4 +111,4 @@ def _anchor_value(span: tuple[float, float], anchor: Anchor) -> float:
 def _shift(scene: Scene, object_id: str, axis: np.ndarray, by: float) -> Scene:
     if abs(by) < 1e-9:
         return scene
-    return edits.move(scene, object_id, scene.object(object_id).pose.moved(by * axis))
+    return edits.move(scene, object_id, scene.object(object_id).pose.move(by * axis))

@@ -81,7 +81,7 @@ def set_clearance(scene: Scene, object_id: str, side: Side, distance_m: float) -
         raise EditRefused(f"there is nothing to the {side} to keep a distance from")
     item = scene.object(object_id)
     shift = (now.distance_m - distance_m) * _outward(item, side)
-    return edits.move(scene, object_id, item.pose.moved(shift))
+    return edits.move(scene, object_id, item.pose.move(shift))
 
 
 def _outward(item: SceneObject, side: Side) -> Float[np.ndarray, "3"]:
@@ -191,5 +191,5 @@ def clear_of_walls(scene: Scene, item: SceneObject) -> Pose:
         foot = pose.position - gap * wall.normal
         foot[2] = np.clip(foot[2], float(heights.min()) + UPRIGHT, float(heights.max()) - UPRIGHT)
         if -reach < gap < reach and is_in_plane_polygon(foot[None], wall)[0]:
-            pose = pose.moved((reach - gap) * wall.normal)
+            pose = pose.move((reach - gap) * wall.normal)
     return pose

@@ -78,7 +78,7 @@ def _move(
     while base in inner:
         base = inner[base].parent
     lowest = next(float(o.corners_world[:, 2].min()) for o in clip.objects if o.id == base)
-    return replace(item, pose=item.pose.moved(shift + np.array([0.0, 0.0, level - lowest])))
+    return replace(item, pose=item.pose.move(shift + np.array([0.0, 0.0, level - lowest])))
 
 
 def free_offset(scene: Scene, clip: Clip) -> Float[np.ndarray, "3"]:
@@ -157,7 +157,7 @@ def paste_clip(scene: Scene, clip: Clip, offset_world: object = BESIDE_M) -> tup
     for item in clip.objects:
         names[item.id] = edits.fresh_id(scene, item.category)
         copy = replace(
-            item, id=names[item.id], pose=item.pose.moved(shift), locked=False, hidden=False, mask_id=None, box_px=None
+            item, id=names[item.id], pose=item.pose.move(shift), locked=False, hidden=False, mask_id=None, box_px=None
         )
         scene = edits.insert(scene, copy)
     edges = {s.child: s for s in clip.supports}

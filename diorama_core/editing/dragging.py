@@ -119,19 +119,19 @@ class Slide:
         """
         pose, place = self._target(np.asarray(eye), np.asarray(direction))
         if snap:
-            pose = self._snapped(pose, place)
+            pose = self._snap(pose, place)
         if slide and not self.along and (place is None or place.upward):
-            scene = self._slid(pose, place)
+            scene = self._slide(pose, place)
         else:
-            scene = self._moved(pose, place)
+            scene = self._move(pose, place)
         start = {o.id: o for o in self.scene.objects}
         return scene, {o.id: o.pose for o in scene.objects if o is not start.get(o.id)}
 
-    def _slid(self, pose: Pose, place: SupportTarget | None) -> Scene:
+    def _slide(self, pose: Pose, place: SupportTarget | None) -> Scene:
         """The scene with the object as near to a pose as it can be; of a home only the room that it comes to counts."""
         if not self.scene.rooms:
             return self.solver.solve(pose)
-        moved = self._moved(pose, place)
+        moved = self._move(pose, place)
         item = moved.object(self.item.id)
         room = rooms_of_objects(replace(moved, objects=(item,), supports=())).get(item.id)
         if room is None:
@@ -142,14 +142,14 @@ class Slide:
         moved, edge = edits.move(moved, item.id, solved.object(item.id).pose), solved.support_of(item.id)
         return moved if edge is None or edge == moved.support_of(item.id) else edits.attach(moved, edge)
 
-    def _moved(self, pose: Pose, place: SupportTarget | None) -> Scene:
+    def _move(self, pose: Pose, place: SupportTarget | None) -> Scene:
         scene = edits.move(self.scene, self.item.id, pose)
         edge = self.scene.support_of(self.item.id)
         if place is not None and (edge is None or edge.parent != place.parent):
             scene = edits.attach(scene, place.edge(self.item.id))
         shift = pose.position - self.item.pose.position
         for other in self.along:
-            scene = edits.move(scene, other, scene.object(other).pose.moved(shift * (1.0, 1.0, 0.0)))
+            scene = edits.move(scene, other, scene.object(other).pose.move(shift * (1.0, 1.0, 0.0)))
         return scene
 
     def _target(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, SupportTarget | None]:
@@ -167,14 +167,14 @@ class Slide:
         for hit in hits_along(eye, direction, self.places, lift_m=lift):
             target = np.array([*(hit.point - reach)[:2], hit.place.surface.level])
             if fits(hit.place, item.size_m, target, item.pose.R_world_object):
-                return item.pose.moved(target - base), hit.place
+                return item.pose.move(target - base), hit.place
         ground = [p for p in self.places if not p.of_object]
         for hit in hits_along(eye, direction, ground, lift_m=lift, slack_m=100.0):
             point = nearest_point(hit.place.surface, hit.point)
             target = np.array([*(point - reach)[:2], hit.place.surface.level])
-            return item.pose.moved(target - base), hit.place
+            return item.pose.move(target - base), hit.place
         level = self._level(eye, direction)
-        return (item.pose, None) if level is None else (item.pose.moved(level - self.grabbed), None)
+        return (item.pose, None) if level is None else (item.pose.move(level - self.grabbed), None)
 
     def _level(self, eye: np.ndarray, direction: np.ndarray) -> np.ndarray | None:
         """The hand in the level plane of the grabbed point, where there is no floor."""
@@ -207,14 +207,14 @@ class Slide:
         assert edge is not None
         return plane_surface(self.scene.plane(edge.parent))
 
-    def _snapped(self, pose: Pose, place: SupportTarget | None) -> Pose:
+    def _snap(self, pose: Pose, place: SupportTarget | None) -> Pose:
         if place is not None and not place.upward and abs(float(place.surface.normal[2])) < 0.7:
             n = place.surface.normal
             across = np.array([-n[1], n[0], 0.0])
             shift = (_grid(float(across @ pose.position)) - float(across @ pose.position)) * across
             shift = shift + np.array([0.0, 0.0, _grid(float(pose.position[2])) - float(pose.position[2])])
-            return pose.moved(shift)
-        snapped = pose.moved(
+            return pose.move(shift)
+        snapped = pose.move(
             (_grid(float(pose.position[0])) - pose.position[0], _grid(float(pose.position[1])) - pose.position[1], 0.0)
         )
         walls = [plane_surface(p) for p in self.scene.architecture.by_role("wall")]

@@ -33,7 +33,7 @@ def mark_by_hand(before: Scene, after: Scene) -> Scene:
     return replace(after, objects=objects, supports=supports)
 
 
-def fixed_ids(scene: Scene) -> frozenset[str]:
+def ids_to_keep(scene: Scene) -> frozenset[str]:
     """Ids of objects that no automatic step moves: what people placed, and what carries it."""
     placed = [o.id for o in scene.objects if o.by_hand]
     carrying = {i for object_id in placed for i in ancestors(scene, object_id) if scene.has_object(i)}

@@ -328,7 +328,7 @@ def _with_edges(scene: Scene, door: str, left: float, right: float, cut: tuple[b
     else:
         return scene
     along = np.cross([0.0, 0.0, 1.0], wall.normal)
-    moved = item.pose.moved((middle - float(item.pose.position @ along)) * along)
+    moved = item.pose.move((middle - float(item.pose.position @ along)) * along)
     pose = replace(moved, scale=moved.scale * (1.0, width / float(item.size_m[1]), 1.0))
     return replace(scene, objects=tuple(replace(o, pose=pose) if o is item else o for o in scene.objects))
 

@@ -30,7 +30,7 @@ class MaskDraft:
     clicks: tuple[tuple[float, float, bool], ...] = ()
     """x, y in photo pixels, and whether it is part of the object."""
 
-    def clicked(self, x: float, y: float, *, part: bool) -> MaskDraft:
+    def click(self, x: float, y: float, *, part: bool) -> MaskDraft:
         """The outline after one more click.
 
         Args:

@@ -140,7 +140,7 @@ def seat(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
     if not options:
         return scene
     if scene.has_plane(edge.parent) and not options[0].upward:
-        return edits.move(scene, object_id, _hung(item, options[0].surface))
+        return edits.move(scene, object_id, _hang(item, options[0].surface))
     base = item.pose.position - item.pose.R_world_object[:, 2] * item.size_m[2] / 2
 
     def far(place: SupportTarget) -> tuple[bool, float]:
@@ -150,7 +150,7 @@ def seat(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
     place = min(options, key=far)
     target = nearest_point(place.surface, base)
     target = target + (place.surface.level - float(place.surface.normal @ target)) * place.surface.normal
-    return edits.move(scene, object_id, item.pose.moved(target - base))
+    return edits.move(scene, object_id, item.pose.move(target - base))
 
 
 def _box_top(item: SceneObject) -> SupportTarget:
@@ -175,7 +175,7 @@ def nearest_point(surface: RestingSurface, point: Float[np.ndarray, "3"]) -> Flo
     return place
 
 
-def _hung(item: SceneObject, surface: RestingSurface) -> Pose:
+def _hang(item: SceneObject, surface: RestingSurface) -> Pose:
     """An object flat against a wall (its back to it) or below a ceiling, as near as possible."""
     n = surface.normal
     if abs(float(n[2])) > UPWARD:
@@ -231,7 +231,7 @@ def insertion(scene: Scene, shape: Shape, object_id: str, hit: Hit, yaw_rad: flo
     if hit.place.upward:
         pose = Pose.upright(hit.point + np.array([0.0, 0.0, shape.size_m[2] / 2]), yaw_rad)
     else:
-        pose = _hung(replace(item, pose=Pose.upright(hit.point + n * 0.01, yaw_rad)), hit.place.surface)
+        pose = _hang(replace(item, pose=Pose.upright(hit.point + n * 0.01, yaw_rad)), hit.place.surface)
         if scene.has_plane(hit.place.parent):
             pose = clamp_to_wall(replace(item, pose=pose), scene.plane(hit.place.parent))
     return replace(item, pose=pose), hit.place.edge(object_id)
@@ -244,7 +244,7 @@ def clamp_to_wall(item: SceneObject, wall: Plane) -> Pose:
     low, high = (float(e) for e in (wall.polygon[:, 2].min(), wall.polygon[:, 2].max()))
     half, z = float(item.size_m[2]) / 2, float(item.pose.position[2])
     level = low + half if item.category == DOOR or high - low < 2 * half else float(np.clip(z, low + half, high - half))
-    return item.pose.moved((0.0, 0.0, level - z))
+    return item.pose.move((0.0, 0.0, level - z))
 
 
 def spot_in_view(

@@ -106,7 +106,7 @@ class Positioner:
         for reach in np.arange(0.05, STEPS_ASIDE_M, 0.05):
             for angle in np.arange(16) * np.pi / 8:
                 shift = reach * np.array([np.cos(angle), np.sin(angle), 0.0])
-                trial = edits.move(scene, object_id, item.pose.moved(shift))
+                trial = edits.move(scene, object_id, item.pose.move(shift))
                 quad = footprint_of(trial.object(object_id))
                 if bool(lie_within(quad[None], frame.outline)[0]) and not self.collisions.pairs(trial, moved_ids):
                     return Spot(trial.object(object_id).pose, edge, float(reach))

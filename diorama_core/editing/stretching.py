@@ -70,7 +70,7 @@ def stretch(scene: Scene, object_id: str, handle: Handle, by_m: float, *, snap: 
     shift = R[:, 2] * grown[2] / 2 if handle.axis is None else R @ (np.asarray(handle.along) * grown) / 2
     pose = Pose(R, item.pose.position + shift, size / np.asarray(item.shape_size_m))
     rise = R[:, 2] * grown[2]
-    riding = {i: scene.object(i).pose.moved(rise) for i in descendants(scene, object_id)}
+    riding = {i: scene.object(i).pose.move(rise) for i in descendants(scene, object_id)}
     return edits.place(edits.move(scene, object_id, pose), riding)
 
 

@@ -66,7 +66,7 @@ def physical_scene(gathered: ExportScene) -> PhysicalScene:
         if bodies[child].free:
             bodies[child] = _weld(bodies[child], carrier)
             notes.append(f"{child} is sunk into {carrier or 'the room'} and welded to it")
-    for filled in cuts.filled():
+    for filled in cuts.overlapping():
         if bodies[filled].free:
             bodies[filled] = _weld(bodies[filled], None)
             notes.append(f"{filled} is inside other objects and stays where it is")

@@ -39,7 +39,7 @@ class Leaf:
     sign: float
     """Sign of its turn about up, 1 or -1."""
 
-    def turned(self, points: Outline, angle_rad: float) -> Outline:
+    def turn(self, points: Outline, angle_rad: float) -> Outline:
         """Points of the shut leaf when it is open by an angle."""
         c, s = np.cos(angle_rad), np.sin(self.sign * angle_rad)
         return (points - self.hinge) @ np.array([[c, s], [-s, c]]) + self.hinge
@@ -141,7 +141,7 @@ def _obstacles(door: SceneObject, others: Sequence[SceneObject]) -> shapely.Geom
 def _free_rad(leaves: Sequence[Leaf], obstacles: shapely.Geometry) -> float:
     """Angle up to which no leaf meets anything, a quarter turn at most."""
     for angle in np.arange(STEP_RAD, QUARTER_RAD + STEP_RAD / 2, STEP_RAD):
-        turned = (shapely.Polygon(leaf.turned(leaf.outline, float(angle))) for leaf in leaves)
+        turned = (shapely.Polygon(leaf.turn(leaf.outline, float(angle))) for leaf in leaves)
         if any(t.intersects(obstacles) for t in turned):
             return float(angle - STEP_RAD)
     return float(QUARTER_RAD)

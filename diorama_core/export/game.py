@@ -55,7 +55,7 @@ def write_game(gathered: ExportScene, path: Path, progress: Progress = SILENT) -
         raise ExportError(
             f"{path}: Draco holds one set of texture coordinates; leave out its compression or --light-uv"
         )
-    document = _Builder(gathered, progress).built()
+    document = _Builder(gathered, progress).build()
     with whole_file(path) as temporary, temporary.open("wb") as file:
         document.write(file)
 
@@ -69,7 +69,7 @@ class _Builder:
         self._materials = GameMaterials(gathered.materials)
         self._lighter: dict[tuple[str, float, tuple[float, ...]], tuple[Surface, ...]] = {}
 
-    def built(self) -> GltfDocument:
+    def build(self) -> GltfDocument:
         self._progress.report(0.0, "preparing colliders")
         physical = physical_scene(self._gathered)
         budget = self._budget()
@@ -189,7 +189,7 @@ class _Builder:
             below: Further children.
             extras: What is said of it.
         """
-        drawn = [self._materials.merged(_move(s, to_pivot) for s in surfaces) for surfaces in levels]
+        drawn = [self._materials.merge(_move(s, to_pivot) for s in surfaces) for surfaces in levels]
         if self._gathered.options.light_uv:
             drawn = [tuple(unwrap(one)) if one else one for one in drawn]
         children = [*below]

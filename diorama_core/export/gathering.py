@@ -198,7 +198,7 @@ class ExportScene:
         return 1.0 if self.options.lights == "photometric" else 1.0 / light.white_nits
 
     @property
-    def carried_photo(self) -> str | None:
+    def photo_text(self) -> str | None:
         """The photo as text for files that hold it; None where it is not asked for, or there is none."""
         return None if self.photo is None or not self.options.photo else photo_text(self.photo)
 
@@ -258,7 +258,7 @@ def gather(
     for number, item in enumerate(order):
         progress.report(number / len(order), f"reading {item.label}")
         scale = relative_scale(item.pose.scale)
-        paint = (item.shape_id, item.colour, item.finish, item.shown_photo_materials, scale, item.open_share)
+        paint = (item.shape_id, item.colour, item.finish, item.visible_materials, scale, item.open_share)
         if paint not in painted:
             made = _shape_meshes(library, item, options, textures, shared, labels)
             painted[paint] = {number: mesh.key for number, mesh in made.items()}
@@ -325,7 +325,7 @@ def _shape_meshes(
     scale = relative_scale(item.pose.scale)
     as_it_stands: PartsSource = library if item.open_share == 0.0 else OpenedShapes(library, item.open_share, scale)
     shown = as_it_stands if pieces is None else OneShape(pieces)
-    paint = (item.colour, item.finish, item.shown_photo_materials)
+    paint = (item.colour, item.finish, item.visible_materials)
     surfaces = shape_surfaces(shown, item.shape_id, *paint, textures, scale)
     grouped = {None: surfaces} if pieces is None else group_by_joint(surfaces)
     made = {}

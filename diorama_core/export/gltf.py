@@ -93,7 +93,7 @@ def write_gathered(gathered: ExportScene, path: Path, progress: Progress = SILEN
 
 def _document(gathered: ExportScene, progress: Progress) -> GltfDocument:
     document = GltfDocument(generator="Diorama", compression=gathered.options.compression)
-    return _Builder(gathered, document, progress).built()
+    return _Builder(gathered, document, progress).build()
 
 
 class _Builder:
@@ -112,9 +112,9 @@ class _Builder:
         for light in gathered.lights:
             self._lights.setdefault(light.owner, []).append(light)
 
-    def built(self) -> GltfDocument:
-        planes = self._grouped([(p.group, self._plane(p)) for p in self._gathered.planes])
-        objects = self._grouped([(o.group, self._object(o)) for o in self._gathered.children_of(None)])
+    def build(self) -> GltfDocument:
+        planes = self._group([(p.group, self._plane(p)) for p in self._gathered.planes])
+        objects = self._group([(o.group, self._object(o)) for o in self._gathered.children_of(None)])
         children = [
             self._branch(name, nodes) for name, nodes in (("architecture", planes), ("objects", objects)) if nodes
         ]
@@ -132,8 +132,8 @@ class _Builder:
                 "provenance": dict(self._gathered.provenance),
             },
         }
-        if self._gathered.carried_photo is not None:
-            root["extras"]["diorama_photo"] = self._gathered.carried_photo
+        if self._gathered.photo_text is not None:
+            root["extras"]["diorama_photo"] = self._gathered.photo_text
         if children:
             root["children"] = children
         node = self._document.add("nodes", root)
@@ -143,12 +143,12 @@ class _Builder:
     def _unique(self, name: str) -> str:
         return unique_name(name, self._names)
 
-    def _grouped(self, nodes: Sequence[tuple[tuple[str, ...], int]]) -> list[int]:
+    def _group(self, nodes: Sequence[tuple[tuple[str, ...], int]]) -> list[int]:
         """The nodes of a home below a node a storey, and below it a node a room."""
         grouped = [node for group, node in nodes if not group]
         for name in dict.fromkeys(group[0] for group, _ in nodes if group):
             inside = [(group[1:], node) for group, node in nodes if group[:1] == (name,)]
-            grouped.append(self._branch(name, self._grouped(inside)))
+            grouped.append(self._branch(name, self._group(inside)))
         return grouped
 
     def _branch(self, name: str, children: list[int]) -> int:

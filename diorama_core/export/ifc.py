@@ -40,7 +40,7 @@ def write_ifc(scene: ExportScene, path: Path, progress: Progress = SILENT) -> No
     """
     builder = _Builder(scene, progress)
     with whole_file(Path(path)) as temporary, temporary.open("w", encoding="ascii", newline="\n") as stream:
-        stream.writelines(builder.built().lines())
+        stream.writelines(builder.build().lines())
 
 
 class _Builder:
@@ -53,13 +53,13 @@ class _Builder:
         self._typed: dict[Any, list[Any]] = {}
         self._storeys: dict[int, Any] = {}
 
-    def built(self) -> IfcDocument:
+    def build(self) -> IfcDocument:
         """The whole model."""
         building = self._building()
         rooms = self._scene.scene.rooms
         numbers = sorted({r.storey for r in rooms}) or [0]
         self._storeys = {n: self._storey(building, n) for n in numbers}
-        self._to.rooted("IfcRelAggregates", RelatingObject=building, RelatedObjects=[*self._storeys.values()])
+        self._to.entity("IfcRelAggregates", RelatingObject=building, RelatedObjects=[*self._storeys.values()])
         walls = wall_lines([p.plane for p in self._scene.planes], self._items, self._scene.scene)
         contents: dict[Any, list[Any]] = {}
         holes: dict[str, Any] = {}
@@ -80,13 +80,13 @@ class _Builder:
             place = storey if element.is_a() in ("IfcDoor", "IfcWindow") else space or storey
             contents.setdefault(place, []).append(element)
             if item.id in holes:
-                self._to.rooted(
+                self._to.entity(
                     "IfcRelFillsElement", RelatingOpeningElement=holes[item.id], RelatedBuildingElement=element
                 )
         for kind, alike in self._typed.items():
-            self._to.rooted("IfcRelDefinesByType", RelatedObjects=alike, RelatingType=kind)
+            self._to.entity("IfcRelDefinesByType", RelatedObjects=alike, RelatingType=kind)
         for place, inside in contents.items():
-            self._to.rooted("IfcRelContainedInSpatialStructure", RelatedElements=inside, RelatingStructure=place)
+            self._to.entity("IfcRelContainedInSpatialStructure", RelatedElements=inside, RelatingStructure=place)
         return self._to
 
     def _storey_of(self, part: str) -> Any:
@@ -101,7 +101,7 @@ class _Builder:
     def _storey(self, building: Any, number: int) -> Any:
         rooms = [r for r in self._scene.scene.rooms if r.storey == number]
         heights = [float(self._scene.scene.plane(r.floor).centre[2]) for r in rooms]
-        return self._to.rooted(
+        return self._to.entity(
             "IfcBuildingStorey",
             Name=f"Storey {number}" if rooms else "Storey",
             ObjectPlacement=self._to.placement(np.eye(4), building.ObjectPlacement),
@@ -118,14 +118,14 @@ class _Builder:
             self._to.add("IfcSIUnit", None, "PLANEANGLEUNIT", None, "RADIAN"),
         ]
         assignment = self._to.add("IfcUnitAssignment", units)
-        parent = self._to.rooted(
+        parent = self._to.entity(
             "IfcProject", Name=self._scene.name, RepresentationContexts=[self._to.context], UnitsInContext=assignment
         )
         below = None
         for kind, name in (("IfcSite", "Site"), ("IfcBuilding", "Building")):
             below = self._to.placement(np.eye(4), below)
-            child = self._to.rooted(kind, Name=name, ObjectPlacement=below, CompositionType="ELEMENT")
-            self._to.rooted("IfcRelAggregates", RelatingObject=parent, RelatedObjects=[child])
+            child = self._to.entity(kind, Name=name, ObjectPlacement=below, CompositionType="ELEMENT")
+            self._to.entity("IfcRelAggregates", RelatingObject=parent, RelatedObjects=[child])
             parent = child
         return parent
 
@@ -140,8 +140,8 @@ class _Builder:
         height, area = top - float(floor.centre[2]), abs(signed_area(floor.polygon[:, :2]))
         if height <= 0.0:
             return None
-        solid = self._to.extruded(floor.polygon[:, :2], float(floor.centre[2]), height)
-        space = self._to.rooted(
+        solid = self._to.extrude(floor.polygon[:, :2], float(floor.centre[2]), height)
+        space = self._to.entity(
             "IfcSpace",
             Name=self._scene.name if room is None else room.name,
             ObjectPlacement=self._to.placement(np.eye(4), storey.ObjectPlacement),
@@ -149,7 +149,7 @@ class _Builder:
             CompositionType="ELEMENT",
             PredefinedType="INTERNAL",
         )
-        self._to.rooted("IfcRelAggregates", RelatingObject=storey, RelatedObjects=[space])
+        self._to.entity("IfcRelAggregates", RelatingObject=storey, RelatedObjects=[space])
         self._to.measure(
             space, "Space", height={"Height": height}, area={"NetFloorArea": area}, volume={"NetVolume": area * height}
         )
@@ -162,17 +162,17 @@ class _Builder:
         t, height = max(wall.plane.thickness, MIN_WALL_M), wall.top_m - wall.bottom_m
         box = self._to.box((0.0, 0.0, 0.0), (wall.length_m, t, height))
         self._to.style(box, _plain(wall.plane.colour))
-        element = self._to.rooted(
+        element = self._to.entity(
             "IfcWall", Name=wall.plane.id, ObjectPlacement=place, Representation=self._to.shape([box], "SweptSolid")
         )
         for opening in wall.openings:
             hole = self._opening(opening, wall, place)
-            self._to.rooted("IfcRelVoidsElement", RelatingBuildingElement=element, RelatedOpeningElement=hole)
+            self._to.entity("IfcRelVoidsElement", RelatingBuildingElement=element, RelatedOpeningElement=hole)
             if opening.object_id is not None:
                 holes[opening.object_id] = hole
         layer = self._to.add("IfcMaterialLayer", self._to.material(_plain(wall.plane.colour), "wall"), t, None)
         layers = self._to.add("IfcMaterialLayerSet", [layer], "wall")
-        self._to.made_of(element, self._to.add("IfcMaterialLayerSetUsage", layers, "AXIS2", "POSITIVE", 0.0))
+        self._to.set_material(element, self._to.add("IfcMaterialLayerSetUsage", layers, "AXIS2", "POSITIVE", 0.0))
         side = wall.length_m * height - sum((o.to_m - o.from_m) * (o.top_m - o.bottom_m) for o in wall.openings)
         self._to.measure(
             element,
@@ -190,7 +190,7 @@ class _Builder:
             max(wall.plane.thickness, MIN_WALL_M) + 2 * THROUGH_M,
             opening.top_m - opening.bottom_m,
         )
-        return self._to.rooted(
+        return self._to.entity(
             "IfcOpeningElement",
             Name=opening.id,
             ObjectPlacement=self._to.placement(np.eye(4), place),
@@ -202,17 +202,17 @@ class _Builder:
         """Floor or ceiling: its polygon, thick away from the room."""
         points = plane.polygon[:, :2] if plane.role == "floor" else plane.polygon[::-1, :2]
         bottom = float(plane.centre[2]) - (plane.thickness if plane.role == "floor" else 0.0)
-        solid = self._to.extruded(points, bottom, float(plane.thickness))
+        solid = self._to.extrude(points, bottom, float(plane.thickness))
         self._to.style(solid, _plain(plane.colour))
         kind, predefined = ("IfcSlab", "FLOOR") if plane.role == "floor" else ("IfcCovering", "CEILING")
-        element = self._to.rooted(
+        element = self._to.entity(
             kind,
             Name=name,
             ObjectPlacement=self._to.placement(np.eye(4), storey.ObjectPlacement),
             Representation=self._to.shape([solid], "SweptSolid"),
             PredefinedType=predefined,
         )
-        self._to.made_of(element, self._to.material(_plain(plane.colour), plane.role))
+        self._to.set_material(element, self._to.material(_plain(plane.colour), plane.role))
         area = abs(signed_area(plane.polygon[:, :2]))
         self._to.measure(
             element, kind.removeprefix("Ifc"), height={"Width": float(plane.thickness)}, area={"NetArea": area}
@@ -230,7 +230,7 @@ class _Builder:
         )
         mapped = self._to.add("IfcMappedItem", source, target)
         kind = CLASSES.get(item.item.category, "IfcFurniture")
-        element = self._to.rooted(
+        element = self._to.entity(
             kind,
             Name=item.item.label,
             ObjectType=item.item.category,
@@ -256,29 +256,29 @@ class _Builder:
         key = (kind, item.mesh)
         if key not in self._types:
             mesh = self._scene.meshes[item.mesh]
-            made = self._to.typed(f"{kind}Type", Name=mesh.name, RepresentationMaps=[self._map(mesh)])
+            made = self._to.type(f"{kind}Type", Name=mesh.name, RepresentationMaps=[self._map(mesh)])
             parts = {m.name: m for m in (s.material for s in mesh.surfaces)}
             constituents = [
                 self._to.add("IfcMaterialConstituent", name, None, self._to.material(m, name))
                 for name, m in parts.items()
             ]
-            self._to.made_of(made, self._to.add("IfcMaterialConstituentSet", mesh.name, None, constituents))
+            self._to.set_material(made, self._to.add("IfcMaterialConstituentSet", mesh.name, None, constituents))
             self._types[key] = made
         return self._types[key]
 
     def _map(self, mesh: ExportMesh) -> Any:
         if mesh.key not in self._maps:
-            self._maps[mesh.key] = self._to.tessellated(mesh.surfaces)
+            self._maps[mesh.key] = self._to.tessellate(mesh.surfaces)
         return self._maps[mesh.key]
 
     def _describe(self, element: Any, item: ExportObject) -> None:
         properties = {"Id": item.id, "Category": item.item.category, "Shape": item.item.shape_id}
         if item.support is not None:
             properties |= {"Supporter": item.support.parent, "Relation": item.support.relation}
-        self._to.rooted(
+        self._to.entity(
             "IfcRelDefinesByProperties",
             RelatedObjects=[element],
-            RelatingPropertyDefinition=self._to.rooted(
+            RelatingPropertyDefinition=self._to.entity(
                 "IfcPropertySet", Name="Diorama", HasProperties=self._values(properties)
             ),
         )

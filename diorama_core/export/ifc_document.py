@@ -46,7 +46,7 @@ class IfcDocument:
         """An entity with its attributes."""
         return self._file.create_entity(kind, *values, **named)
 
-    def rooted(self, kind: str, **named: Any) -> Any:
+    def entity(self, kind: str, **named: Any) -> Any:
         """An entity that has an identifier of its own."""
         return self.add(kind, GlobalId=self._new_guid(), **named)
 
@@ -80,9 +80,9 @@ class IfcDocument:
     def box(self, low: Sequence[float], size: Sequence[float]) -> Any:
         """A box along the axes, from its lower corner."""
         corners = np.array([(0.0, 0.0), (size[0], 0.0), (size[0], size[1]), (0.0, size[1])])
-        return self.extruded(corners + np.array(low[:2]), low[2], float(size[2]))
+        return self.extrude(corners + np.array(low[:2]), low[2], float(size[2]))
 
-    def extruded(self, outline: Float[np.ndarray, "n 2"], bottom_m: float, height_m: float) -> Any:
+    def extrude(self, outline: Float[np.ndarray, "n 2"], bottom_m: float, height_m: float) -> Any:
         """A level outline drawn upward.
 
         Args:
@@ -120,9 +120,9 @@ class IfcDocument:
             self._materials[name] = self.add("IfcMaterial", name, None, substance_of(material).name)
         return self._materials[name]
 
-    def made_of(self, element: Any, material: Any) -> None:
+    def set_material(self, element: Any, material: Any) -> None:
         """Say which material, layers or constituents an element or a type is made of."""
-        self.rooted("IfcRelAssociatesMaterial", RelatedObjects=[element], RelatingMaterial=material)
+        self.entity("IfcRelAssociatesMaterial", RelatedObjects=[element], RelatingMaterial=material)
 
     def measure(self, element: Any, of: str, **measured: Mapping[str, float]) -> None:
         """The base quantities of an element.
@@ -139,10 +139,10 @@ class IfcDocument:
             for name, value in values.items()
         ]
         name = f"Qto_{of}BaseQuantities"
-        quantity_set = self.rooted("IfcElementQuantity", Name=name, Quantities=quantities)
-        self.rooted("IfcRelDefinesByProperties", RelatedObjects=[element], RelatingPropertyDefinition=quantity_set)
+        quantity_set = self.entity("IfcElementQuantity", Name=name, Quantities=quantities)
+        self.entity("IfcRelDefinesByProperties", RelatedObjects=[element], RelatingPropertyDefinition=quantity_set)
 
-    def tessellated(self, surfaces: Sequence[Surface]) -> Any:
+    def tessellate(self, surfaces: Sequence[Surface]) -> Any:
         """Triangles in their materials' styles, as what types and elements map."""
         sets = []
         for surface in surfaces:
@@ -154,14 +154,14 @@ class IfcDocument:
         body = self.add("IfcShapeRepresentation", self._body, "Body", "Tessellation", sets)
         return self.add("IfcRepresentationMap", self.origin, body)
 
-    def typed(self, kind: str, **named: Any) -> Any:
+    def type(self, kind: str, **named: Any) -> Any:
         """A type, whose enumerations that have to be said are not defined."""
         from ifcopenshell import ifcopenshell_wrapper
 
         entity = ifcopenshell_wrapper.schema_by_name(SCHEMA).declaration_by_name(kind).as_entity()
         assert entity is not None, kind
         missing = {a.name(): "NOTDEFINED" for a in entity.all_attributes() if not a.optional()}
-        return self.rooted(kind, **{k: v for k, v in missing.items() if k != "GlobalId"}, **named)
+        return self.entity(kind, **{k: v for k, v in missing.items() if k != "GlobalId"}, **named)
 
 
 def _list_text(rows: Float[np.ndarray, "n 3"] | Int[np.ndarray, "n 3"], number: str) -> str:

@@ -68,7 +68,7 @@ class Cuts:
         """The parts of an object, or of one of its limbs, that are left, in the frame of either."""
         T = self._frames[object_id, limb]
         rows = self._rows.get((object_id, limb), ())
-        return tuple((piece - T[:3, 3]) @ T[:3, :3] for row in rows for piece in self._left(row))
+        return tuple((piece - T[:3, 3]) @ T[:3, :3] for row in rows for piece in self._rest(row))
 
     def moving(self, body: RigidBody) -> tuple[MovingPart, ...]:
         """The limbs of an object with the parts that are left."""
@@ -118,7 +118,7 @@ class Cuts:
         along_i, along_j = self._world[i] @ normals.T, self._world[j] @ normals.T
         gaps = along_i.min(axis=0) - along_j.max(axis=0)
         is_same = a is not None and a == b
-        if gaps.max() >= 0 or (not is_same and (self._lifted(i, j) or self._lifted(j, i))):
+        if gaps.max() >= 0 or (not is_same and (self._lift(i, j) or self._lift(j, i))):
             return
         for k in np.argsort(-gaps, kind="stable"):
             options = [(i, j, normals[k], float(along_j[:, k].max())), (j, i, -normals[k], float(-along_i[:, k].min()))]
@@ -129,7 +129,7 @@ class Cuts:
         if is_same or not self._sink(a, b):
             self._deep.append((i, j))
 
-    def _lifted(self, rider: int, carrier: int) -> bool:
+    def _lift(self, rider: int, carrier: int) -> bool:
         """Cut a rider's part level above its carrier's, where it only dips into it; soft ones sink in deeper."""
         top, low = float(self._world[carrier][:, 2].max()), float(self._world[rider][:, 2].min())
         owner = self._owners[rider]
@@ -177,7 +177,7 @@ class Cuts:
         self.sunk.update(sunk)
         return bool(sunk)
 
-    def _left(self, row: int) -> list[Points]:
+    def _rest(self, row: int) -> list[Points]:
         return self._pieces.get(row, [self._world[row]])
 
     def _hollow_out(self, i: int, j: int) -> None:
@@ -185,12 +185,12 @@ class Cuts:
         part, other = sorted((i, j), key=self._firmness)
         if self._owners[part] is None:
             return
-        left = self._left(part)
-        for hole in self._left(other):
+        left = self._rest(part)
+        for hole in self._rest(other):
             left = [rest for piece in left for rest in subtract_convex(piece, hole)]
         self._pieces[part] = left
 
-    def filled(self) -> list[str]:
+    def overlapping(self) -> list[str]:
         """Objects that share nearly all of their room with others: what is left of them would not stand."""
         hollowed = dict.fromkeys(owner for row in self._pieces if (owner := self._owners[row]) is not None)
         return [name for name in hollowed if self._share_left(name) < MIN_LEFT]
@@ -198,7 +198,7 @@ class Cuts:
     def _share_left(self, owner: str) -> float:
         rows = self._rows.get((owner, None), ())
         whole = sum(hull_volume(self._world[row]) for row in rows)
-        return sum(hull_volume(p) for row in rows for p in self._left(row)) / whole if whole else 1.0
+        return sum(hull_volume(p) for row in rows for p in self._rest(row)) / whole if whole else 1.0
 
 
 def subtract_convex(part: Points, hole: Points) -> list[Points]:

@@ -38,14 +38,14 @@ class GameMaterials:
         self._palettes = {two: replace(self._palette, double_sided=two) for two in (False, True)}
         self._equal: dict[object, Material] = {}
 
-    def merged(self, surfaces: Iterable[Surface]) -> tuple[Surface, ...]:
+    def merge(self, surfaces: Iterable[Surface]) -> tuple[Surface, ...]:
         """One surface a material."""
         by_material: dict[int, list[Surface]] = {}
-        for surface in map(self._painted, surfaces):
+        for surface in map(self._paint, surfaces):
             by_material.setdefault(id(surface.material), []).append(surface)
         return tuple(_join(some) for some in by_material.values())
 
-    def _painted(self, surface: Surface) -> Surface:
+    def _paint(self, surface: Surface) -> Surface:
         material = _without_flat_picture(surface.material)
         if _is_plain(material):
             uv = np.tile(np.array(self._uv[_look(material)], dtype=np.float32), (len(surface.vertices), 1))

@@ -29,7 +29,7 @@ def fit_pictures(scene: Scene, pictures: Pictures, side_px: int) -> Pictures:
         side_px: Of the square.
     """
     names = {p.texture for p in scene.architecture.planes}
-    names |= {m.texture for o in scene.objects for m in o.shown_photo_materials}
+    names |= {m.texture for o in scene.objects for m in o.visible_materials}
     shown = {name: _scale(p, side_px / max(p.shape[:2])) for name, p in pictures.items() if name in names}
     texels = sum(p.shape[0] * p.shape[1] for p in shown.values())
     factor = side_px / max(float(np.sqrt(texels)), 1.0)

@@ -60,7 +60,7 @@ class Piece:
     """Whether it is seen from before, rather than from above."""
 
     @property
-    def drawn_m(self) -> tuple[float, float]:
+    def extent_m(self) -> tuple[float, float]:
         """Width, and depth or height, whichever is seen."""
         return self.size_m[1], self.height_m if self.upright else self.size_m[0]
 
@@ -119,7 +119,7 @@ class FloorPlan:
     """Names and floors of the rooms of a home."""
     kind: str = "Floor plan"
 
-    def moved(self, by: Float[np.ndarray, "2"]) -> FloorPlan:
+    def move(self, by: Float[np.ndarray, "2"]) -> FloorPlan:
         """The plan elsewhere (m), as storeys lie beside each other on one sheet."""
 
         def lines(given: tuple[Outline, ...]) -> tuple[Outline, ...]:
@@ -351,7 +351,7 @@ def _door(wall: DrawnWall, opening: Opening, swing: DoorSwing | None) -> tuple[O
     angles = np.linspace(0, swing.free_rad, ARC_POINTS)
     lines: list[Outline] = []
     for leaf in swing.leaves:
-        arc = np.concatenate([leaf.turned(leaf.tip[None], float(angle)) for angle in angles])
+        arc = np.concatenate([leaf.turn(leaf.tip[None], float(angle)) for angle in angles])
         lines += [np.stack([leaf.hinge, arc[-1]]), arc]
     return tuple(lines)
 

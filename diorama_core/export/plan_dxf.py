@@ -44,7 +44,7 @@ def dxf_text(plans: Sequence[FloorPlan]) -> str:
     right = float(plans[0].bounds[0, 0])
     for plan in plans:
         low, high = plan.bounds
-        _draw(document, space, plan.moved(np.array([right - low[0], 0.0])), taken)
+        _draw(document, space, plan.move(np.array([right - low[0], 0.0])), taken)
         if len(plans) > 1:
             name = space.add_text(plan.name, height=TEXT_MM, dxfattribs={"layer": "LABELS"})
             name.set_placement((right * MM_PER_M, low[1] * MM_PER_M - 2 * TEXT_MM))
@@ -93,7 +93,7 @@ def _add_piece(document: Any, space: Any, piece: Piece, taken: set[str]) -> None
     for outline in piece.outlines:
         block.add_lwpolyline((outline - middle) * MM_PER_M, close=True, dxfattribs={"layer": "0"})
     insert = space.add_blockref(name, middle * MM_PER_M, dxfattribs={"layer": layer})
-    size = "{:.2f} x {:.2f} m".format(*piece.drawn_m)
+    size = "{:.2f} x {:.2f} m".format(*piece.extent_m)
     for tag, text in (("ID", piece.id), ("NAME", piece.label), ("SIZE", size)):
         attribute = insert.add_attrib(
             tag, " ".join(text.split()), middle * MM_PER_M, {"layer": layer, "height": TEXT_MM}

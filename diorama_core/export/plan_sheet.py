@@ -137,7 +137,7 @@ def _label_marks(piece: Piece, to_page: _ToPage) -> list[SheetLine | Text]:
         return []
     middle, turn = (low + high) / 2, 0.0 if lengthwise else 90.0
     up = np.array([0.0, 1.0]) if lengthwise else np.array([-1.0, 0.0])
-    size = "{:.2f} × {:.2f}".format(*piece.drawn_m)
+    size = "{:.2f} × {:.2f}".format(*piece.extent_m)
     if across < 2.8 * SMALL_MM or along < LETTER * SMALL_MM * len(size):
         return [_text(piece.label, middle, SMALL_MM, turn)]
     gap = 0.65 * SMALL_MM * up

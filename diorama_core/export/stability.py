@@ -59,7 +59,7 @@ class StabilityReport:
         return float(np.mean([d.stable for d in self.drifts])) if self.drifts else 1.0
 
     @property
-    def fallen(self) -> tuple[Drift, ...]:
+    def falls(self) -> tuple[Drift, ...]:
         """The objects that fell off or over, in the order of the scene."""
         return tuple(d for d in self.drifts if d.fallen_m > FALLEN_M or d.tilted_deg > TIPPED_DEG)
 

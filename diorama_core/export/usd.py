@@ -165,8 +165,8 @@ def _describe(prim: Usd.Prim, gathered: ExportScene) -> None:
     prim.SetDisplayName(gathered.name)
     note(prim, "scene", scene_to_json(gathered.scene, indent=None))
     note(prim, "objects", json.dumps([o.id for o in gathered.objects]))
-    if gathered.carried_photo is not None:
-        note(prim, "photo", gathered.carried_photo)
+    if gathered.photo_text is not None:
+        note(prim, "photo", gathered.photo_text)
     if gathered.provenance:
         note(prim, "provenance", json.dumps(dict(gathered.provenance), ensure_ascii=False))
 

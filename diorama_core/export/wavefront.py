@@ -111,9 +111,9 @@ class MaterialFile:
         self._materials: dict[str, Material] = {}
         self._sources = tuple(materials)  # holding them keeps their ids from being reused
         for material in self._sources:
-            name = self._unused(re.sub(r"\s+", "_", material.name.strip()) or "material")
+            name = self._free_name(re.sub(r"\s+", "_", material.name.strip()) or "material")
             self._names[id(material)] = name
-            self._materials[name] = self._written(material if maps else replace(material, maps={}))
+            self._materials[name] = self._prepare(material if maps else replace(material, maps={}))
 
     def name(self, material: Material) -> str:
         """What the file calls a material: no spaces, unique."""
@@ -128,13 +128,13 @@ class MaterialFile:
         for name, picture in self._files.values():
             yield name, self._made.encoded(picture)
 
-    def _unused(self, stem: str) -> str:
+    def _free_name(self, stem: str) -> str:
         name, number = stem, 2
         while name in self._materials:
             name, number = f"{stem}_{number}", number + 1
         return name
 
-    def _written(self, material: Material) -> Material:
+    def _prepare(self, material: Material) -> Material:
         """The material as it is written; its pictures get their names."""
         if material.texture is not None:
             texture = self._made.tinted(material.texture, material.colour)

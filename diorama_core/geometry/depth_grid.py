@@ -57,4 +57,4 @@ def reduce(
         return depth_m, intrinsics
     size = (max(1, round(width * factor)), max(1, round(height * factor)))
     small = cv2.resize(np.ascontiguousarray(depth_m), size, interpolation=cv2.INTER_NEAREST)
-    return small.astype(np.float32), intrinsics.scaled(*size)
+    return small.astype(np.float32), intrinsics.resize(*size)

@@ -30,11 +30,11 @@ class RayHits:
     """Unit normal of the triangle, by the order of its corners."""
 
     @property
-    def found(self) -> Bool[np.ndarray, "*n"]:
+    def is_hit(self) -> Bool[np.ndarray, "*n"]:
         """Whether the ray met anything."""
         return self.triangle >= 0
 
-    def chosen(self, which: np.ndarray) -> RayHits:
+    def select(self, which: np.ndarray) -> RayHits:
         """The hits at a mask or at indices."""
         return RayHits(self.distance[which], self.triangle[which], self.barycentric[which], self.normal[which])
 
@@ -55,7 +55,7 @@ class RayScene:
         self._scene = o3d.t.geometry.RaycastingScene(nthreads=1)
         if len(triangles):
             self._scene.add_triangles(_tensor(vertices), _tensor(triangles, np.uint32))
-        self.occluded(np.array([[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]]))  # builds the tree here, not under threads
+        self.is_occluded(np.array([[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]]))  # builds the tree here, not under threads
 
     def first_hits(self, rays: RayArray) -> RayHits:
         """What every ray meets first."""
@@ -67,7 +67,7 @@ class RayScene:
             answer["primitive_normals"].numpy(),
         )
 
-    def occluded(
+    def is_occluded(
         self, rays: Float[np.ndarray, "*n 6"], near: float = 0.0, far: float = np.inf
     ) -> Bool[np.ndarray, "*n"]:
         """Whether anything is between two distances along each ray, in units of its direction."""

@@ -103,16 +103,16 @@ class SeeThrough:
         """How well shapes fill the same places, 0 to 1; cells as in the window."""
         return soft_iou(
             self._target,
-            self._blurred(np.where(silhouettes, self.weight.astype(np.float32), np.float32(0))),
+            self._blur(np.where(silhouettes, self.weight.astype(np.float32), np.float32(0))),
             np.ones(len(self._target)),
         )
 
     @cached_property
     def _target(self) -> Float[np.ndarray, "n"]:
         """What shapes should fill."""
-        return self._blurred((self.shown * self.weight)[None])[0]
+        return self._blur((self.shown * self.weight)[None])[0]
 
-    def _blurred(self, filled: Float[np.ndarray, "p n"] | Float32[np.ndarray, "p n"]) -> Float[np.ndarray, "p n"]:
+    def _blur(self, filled: Float[np.ndarray, "p n"] | Float32[np.ndarray, "p n"]) -> Float[np.ndarray, "p n"]:
         cells = self.window.cells
         sigma = self.settings.blur * cells
         grids = filled.reshape(-1, cells, cells).astype(np.float32, copy=False)

@@ -78,7 +78,7 @@ class ShapeHits:
         )
 
     @cached_property
-    def covered(self) -> Bool[np.ndarray, "p r"]:
+    def is_hit(self) -> Bool[np.ndarray, "p r"]:
         """Whether the shape is met."""
         return np.isfinite(self.depth_m)
 
@@ -89,7 +89,7 @@ class ShapeHits:
         normals = self.normals_object @ to_world.transpose(0, 2, 1)
         normals = normals / np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-12)
         away = (normals * self.directions_world).sum(axis=-1) > 0
-        return np.where(self.covered[..., None], np.where(away[..., None], -normals, normals), 0.0)
+        return np.where(self.is_hit[..., None], np.where(away[..., None], -normals, normals), 0.0)
 
     def normals_along(self, others_world: Float[np.ndarray, "r 3"]) -> Float[np.ndarray, "p r"]:
         """Products of `normals_world` with another vector of every ray, without making them."""
@@ -98,7 +98,7 @@ class ShapeHits:
         lengths = np.sqrt(np.einsum("pri,pri->pr", normals, normals))
         along = np.einsum("pri,ri->pr", normals, others_world) / np.maximum(lengths, 1e-12)
         away = np.einsum("pri,ri->pr", normals, self.directions_world) > 0
-        return np.where(self.covered, np.where(away, -along, along), 0.0)
+        return np.where(self.is_hit, np.where(away, -along, along), 0.0)
 
 
 class ShapeCaster:
@@ -140,7 +140,7 @@ class ShapeCaster:
             poses: of the shape, p of them.
         """
         rays = _rays(origin_world, directions_world, poses)
-        return self._scene.occluded(rays, NEAR_M)
+        return self._scene.is_occluded(rays, NEAR_M)
 
     def cast(
         self, origin_world: Float[np.ndarray, "3"], directions_world: Float[np.ndarray, "r 3"], poses: PoseBatch

@@ -48,7 +48,7 @@ def numbered_frames(folder: Path) -> Frames:
         if T.shape != (4, 4) or not np.isfinite(T).all():
             continue
         size = _size(depth)
-        k = SEVEN_SCENES.scaled(*size)
+        k = SEVEN_SCENES.resize(*size)
         if known is not None and len(known) >= 7:
             k = Intrinsics(*size, known[0], known[5], known[2], known[6])
         pictures = (depth.with_name(f"{stem}.color.{ending}") for ending in ("png", "jpg"))
@@ -71,7 +71,7 @@ def replica_frames(folder: Path) -> Frames:
     frames = []
     for depth, row in zip(_find(folder, files, "results/depth*.png"), rows, strict=False):
         picture = next(filter(files.holds, depth.parent.glob(depth.stem.replace("depth", "frame") + ".*")), None)
-        frames.append(DepthFrame(depth, Camera(k.scaled(*_size(depth)), row.reshape(4, 4)), None, picture, 1 / steps))
+        frames.append(DepthFrame(depth, Camera(k.resize(*_size(depth)), row.reshape(4, 4)), None, picture, 1 / steps))
     notes = () if text else ("the camera is that of NICE-SLAM's Replica (600 of 1200 pixels)",)
     return Frames(tuple(frames), None, notes)
 

@@ -114,7 +114,7 @@ def tum_frames(folder: Path) -> Frames:
         if abs(poses[nearest, 0] - float(time)) > TUM_APART_S or not files.holds(depth):
             continue
         with Image.open(depth, formats=("PNG", "PPM")) as opened:
-            k = KINECT.scaled(*opened.size)
+            k = KINECT.resize(*opened.size)
         shown = min(pictures, key=lambda p: abs(float(p[0]) - float(time)), default=None)
         picture = folder / shown[1] if shown is not None and files.holds(folder / shown[1]) else None
         camera = Camera(k, _pose(poses[nearest, 1:4], poses[nearest, 4:8]))
@@ -200,7 +200,7 @@ def _points(frame: DepthFrame, step: int) -> Float[np.ndarray, "n 3"]:
     rows, columns = np.nonzero(good)
     rows, columns = rows[::step], columns[::step]
     height, width = depth.shape
-    k = frame.camera.intrinsics.scaled(width, height)
+    k = frame.camera.intrinsics.resize(width, height)
     z = depth[rows, columns]
     local = np.column_stack([(columns + 0.5 - k.cx) / k.fx * z, (rows + 0.5 - k.cy) / k.fy * z, z])
     return local @ frame.camera.T_world_camera[:3, :3].T + frame.camera.position

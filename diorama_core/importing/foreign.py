@@ -132,7 +132,7 @@ def _add(part: Part, path: Path, sink: ShapeSink, known: KnownShapes) -> _Shaped
 
 
 def _ingest(part: Part, shape_id: str, path: Path, given: Given, known: KnownShapes) -> Ingested:
-    raw = RawModel(part.unturned, (part.name,), UNKNOWN, ())
+    raw = RawModel(part.local_scene, (part.name,), UNKNOWN, ())
     source = ModelSource(Path(f"{part.name.replace('/', ' ')}.glb"), Path(), shape_id, f"{path.name} {shape_id}", given)
     return ingest_model(raw, source, known, square=False)
 

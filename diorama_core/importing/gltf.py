@@ -200,7 +200,7 @@ class _Pictures:
             return None
         image = self._document["images"][texture["source"]]
         data = self._view_bytes(image["bufferView"]) if "bufferView" in image else self._uri_bytes(image.get("uri", ""))
-        data = None if data is None else self._references.checked_image(data, str(image.get("name", "a picture")))
+        data = None if data is None else self._references.check_image(data, str(image.get("name", "a picture")))
         if data is None:
             return None
         with Image.open(io.BytesIO(data), formats=IMAGE_FORMATS) as picture:

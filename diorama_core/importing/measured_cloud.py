@@ -86,7 +86,7 @@ def measure_cloud(cloud: PointCloud) -> MeasuredRoom:
         notes.append("no ceiling was scanned; walls end where points end")
     if left_out:
         notes.append(f"{left_out} smaller objects were left out")
-    photos = tuple(p.moved(T) for p in cloud.photos)
+    photos = tuple(p.move(T) for p in cloud.photos)
     return MeasuredRoom(walls, boxes, openings, floors=(MeasuredFloor(ring, 0.0),), notes=tuple(notes), photos=photos)
 
 

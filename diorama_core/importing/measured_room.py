@@ -76,7 +76,7 @@ def open_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
         if any(_is_other_side(opening, wall, *known, walls) for known in seen):
             continue
         seen.append((opening, wall))
-        item = _hung(names, opening, wall, library)
+        item = _hang(names, opening, wall, library)
         objects.append(item)
         supports.append(Support(item.id, wall.id, "mounted on", child_face="back"))
     known_supports = tuple(s for s in supports if s is not None)
@@ -285,7 +285,7 @@ def _with_passages(
     return tuple(cut.values()), unused
 
 
-def _hung(names: _Names, opening: MeasuredOpening, wall: Plane, library: ShapeLibrary) -> SceneObject:
+def _hang(names: _Names, opening: MeasuredOpening, wall: Plane, library: ShapeLibrary) -> SceneObject:
     """A door or a window with its back at the wall."""
     yaw = float(np.arctan2(wall.normal[1], wall.normal[0]))
     on_wall = opening.centre - (wall.normal @ opening.centre - wall.offset) * wall.normal

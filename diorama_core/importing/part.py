@@ -41,7 +41,7 @@ class Part:
         return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
     @property
-    def unturned(self) -> trimesh.Scene:
+    def local_scene(self) -> trimesh.Scene:
         """The geometry along the part's own axes."""
         scene, T = self.scene.copy(), np.eye(4)
         T[:3, :3] = self.turn.T

@@ -40,7 +40,7 @@ class ScanPhoto:
     """In the world of the points; its intrinsics are the picture's."""
     unit_m: float = 0.001
 
-    def moved(self, T_to_from: Float[np.ndarray, "4 4"]) -> ScanPhoto:
+    def move(self, T_to_from: Float[np.ndarray, "4 4"]) -> ScanPhoto:
         """A copy of the photo in another frame: `p_to = T_to_from @ p_from`, rigid."""
         return replace(self, camera=Camera(self.camera.intrinsics, T_to_from @ self.camera.T_world_camera))
 

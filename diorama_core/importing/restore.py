@@ -55,7 +55,7 @@ def restore(file: MarkedFile) -> Restored:
     changes += remarks
     for index, object_id in enumerate(ids):
         if object_id is not None:
-            scene, remarks = _hung(scene, original, object_id, _carrier(file.nodes, ids, index))
+            scene, remarks = _hang(scene, original, object_id, _carrier(file.nodes, ids, index))
             changes += remarks
     scene, remarks = _room_and_camera(scene, file)
     return Restored(scene, (*changes, *remarks))
@@ -154,7 +154,7 @@ def _carrier(nodes: Sequence[ObjectNode], ids: Sequence[str | None], index: int)
     return None
 
 
-def _hung(scene: Scene, original: Scene, object_id: str, carrier: str | None) -> tuple[Scene, list[str]]:
+def _hang(scene: Scene, original: Scene, object_id: str, carrier: str | None) -> tuple[Scene, list[str]]:
     """An object below another node than it was written below stands on that one's object."""
     if carrier is None or carrier in ancestors(scene, object_id):
         return scene, []

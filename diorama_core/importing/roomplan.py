@@ -32,9 +32,9 @@ from diorama_core.importing.roomplan_parts import (
     kinds_of,
     move,
     name_floors,
-    spoken,
     storey_notes,
     without_unusable,
+    words,
 )
 from diorama_core.importing.roomplan_usd import read_usd
 from diorama_core.io.bounded import read_json, shorten
@@ -127,7 +127,7 @@ def _combine(rooms: Mapping[Path, Mapping[str, Any]]) -> Mapping[str, Any]:
 def _section_name(row: Mapping[str, Any]) -> str:
     """The name that RoomPlan gives a part of the floor; empty where it knows none."""
     label = _word(row.get("label") or "")
-    return "" if label == "unidentified" else shorten(spoken(label), 60)
+    return "" if label == "unidentified" else shorten(words(label), 60)
 
 
 def _point(values: Any) -> Float[np.ndarray, "3"]:

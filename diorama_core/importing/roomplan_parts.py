@@ -61,19 +61,19 @@ def without_unusable(rows: Iterable[MeasuredBox | str]) -> tuple[tuple[MeasuredB
 
 def kinds_of_label(label: str) -> frozenset[str]:
     """What a thing may be that a scan calls so; nothing where RoomPlan has no such word."""
-    return frozenset(next((kinds for word, kinds in KINDS.items() if spoken(word) == label), ()))
+    return frozenset(next((kinds for word, kinds in KINDS.items() if words(word) == label), ()))
 
 
-def spoken(word: str) -> str:
+def words(word: str) -> str:
     """A category as words, as in "dining table"."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word).lower()
 
 
 def kinds_of(word: str, attributes: tuple[str, ...] = ()) -> Mapping[str, float]:
     """What a thing of RoomPlan's category, with its attributes, may be, and how often it is."""
-    resolution = resolve(spoken(word))
+    resolution = resolve(words(word))
     kinds = KINDS.get(word) or (
-        meanings(spoken(word), resolution.category.name) if resolution.exact else {UNKNOWN.name: 1.0}
+        meanings(words(word), resolution.category.name) if resolution.exact else {UNKNOWN.name: 1.0}
     )
     named = [kind for a in attributes for end, kind in ATTRIBUTES.items() if kind and a.lower().endswith(end.lower())]
     return {named[0]: 1.0} if named else kinds
@@ -95,11 +95,11 @@ def box_of(
     front[2] = 0.0
     length = float(np.linalg.norm(front))
     if length < 0.5 or np.sort(size)[1] < MIN_SIDE_M:
-        return shorten(spoken(word) or "thing")
+        return shorten(words(word) or "thing")
     front /= length
     up = np.array([0.0, 0.0, 1.0])
     R = np.stack([front, np.cross(up, front), up], axis=1)
-    return MeasuredBox(spoken(word), kinds, R, M[:3, 3].copy(), np.maximum(size[[2, 0, 1]], 0.01), confidence)
+    return MeasuredBox(words(word), kinds, R, M[:3, 3].copy(), np.maximum(size[[2, 0, 1]], 0.01), confidence)
 
 
 def move(M: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:

@@ -72,10 +72,10 @@ class Sources:
     def imports(self, module: str) -> frozenset[str]:
         """The modules of the package that a module's text imports."""
         if module not in self._imports:
-            self._imports[module] = frozenset(self._imported(self._text(module)))
+            self._imports[module] = frozenset(self._imports_in(self._text(module)))
         return self._imports[module]
 
-    def _imported(self, text: str) -> Iterator[str]:
+    def _imports_in(self, text: str) -> Iterator[str]:
         for source, listed, line, whole in _IMPORT.findall(text):
             yield whole or source
             for name in _NAME.findall(listed or line):

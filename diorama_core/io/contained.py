@@ -52,7 +52,7 @@ class ContainedFiles:
         plain = self._plain(name)
         if _ABSOLUTE.match(plain):
             raise self.error(f"{quote(name)} points outside the folder that was added")
-        return self.checked((folder or self.root) / plain, name)
+        return self.check((folder or self.root) / plain, name)
 
     def path_or_beside(self, name: str, folder: Path) -> Path:
         """As `path`, or of a name that leads nowhere the file of the same last part in the folder itself.
@@ -71,7 +71,7 @@ class ContainedFiles:
                 raise
             return beside
 
-    def checked(self, path: Path, name: str | None = None) -> Path:
+    def check(self, path: Path, name: str | None = None) -> Path:
         """A path of the document's folder, as `path` gives it.
 
         Args:
@@ -114,7 +114,7 @@ class ContainedFiles:
     def holds(self, path: Path) -> bool:
         """Whether a path is a regular file that may be read."""
         try:
-            self.checked(path)
+            self.check(path)
         except self.error:
             return False
         return True

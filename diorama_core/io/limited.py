@@ -106,7 +106,7 @@ class LimitedProcess:
             InputError: the limit of memory or time was reached, or the process crashed.
             DioramaError: what the function raised.
         """
-        return self._asked(name, (function, args, kwargs), SILENT)
+        return self._ask(name, (function, args, kwargs), SILENT)
 
     def work(self, name: str, function: Callable[..., R], *args: Any, progress: Progress) -> R:
         """`function(*args, progress)` in the process, for long work that reports its progress.
@@ -123,11 +123,11 @@ class LimitedProcess:
             InputError, DioramaError: as `call`.
             Cancelled: when asked to stop.
         """
-        return self._asked(name, (function, args, None), progress)
+        return self._ask(name, (function, args, None), progress)
 
-    def _asked(self, name: str, task: tuple[Any, Any, Any], progress: Progress) -> Any:
+    def _ask(self, name: str, task: tuple[Any, Any, Any], progress: Progress) -> Any:
         with self._lock:
-            messages = self._started()
+            messages = self._start()
             try:
                 messages.send(task)
                 good, value = self._answer_from(messages, name, progress)
@@ -174,7 +174,7 @@ class LimitedProcess:
             with contextlib.suppress(OSError):
                 process.kill()
 
-    def _started(self) -> _Messages:
+    def _start(self) -> _Messages:
         if self._process is not None and self._process.poll() is None and self._messages is not None:
             return self._messages
         self._end()

@@ -69,7 +69,7 @@ def _lowered(scene: Scene, item: SceneObject, poses: Mapping[str, Pose]) -> Pose
         if plane.role != "floor":
             return pose
         top = float(plane.polygon[:, 2].mean())
-    return pose.moved((0.0, 0.0, top - _span(item, pose)[0]))
+    return pose.move((0.0, 0.0, top - _span(item, pose)[0]))
 
 
 def _pushed(scene: Scene, poses: dict[str, Pose]) -> bool:
@@ -85,7 +85,7 @@ def _pushed(scene: Scene, poses: dict[str, Pose]) -> bool:
             for o in free:
                 share = (1.0 if o is a else -1.0) * way / len(free)
                 for carried in (o.id, *_carried(scene, o.id)):
-                    poses[carried] = poses[carried].moved((share[0], share[1], 0.0))
+                    poses[carried] = poses[carried].move((share[0], share[1], 0.0))
             changed = changed or bool(free)
     return changed
 

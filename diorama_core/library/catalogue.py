@@ -116,10 +116,10 @@ class BuiltInLibrary:
 
     def shapes(self) -> tuple[Shape, ...]:
         """All records in a stable order, without support surfaces."""
-        return self._listed
+        return self._shapes
 
     @cached_property
-    def _listed(self) -> tuple[Shape, ...]:
+    def _shapes(self) -> tuple[Shape, ...]:
         return tuple(self._record(shape_id) for shape_id in self._designs)
 
     def in_category(self, category: str) -> tuple[Shape, ...]:
@@ -128,30 +128,30 @@ class BuiltInLibrary:
 
     def shape(self, shape_id: str) -> Shape:
         """One record with its support surfaces; raises `LibraryError` when unknown."""
-        record = self._known(shape_id)
-        return replace(record, surfaces=self._surfaces.get(shape_id, lambda: self._measured(record)))
+        record = self._find(shape_id)
+        return replace(record, surfaces=self._surfaces.get(shape_id, lambda: self._measure(record)))
 
     def mesh(self, shape_id: str) -> trimesh.Trimesh:
         """Geometry only, one mesh in the canonical frame. Shared: do not change it."""
-        self._known(shape_id)
-        return self._meshes.get(shape_id, lambda: mesh_of(self._built(shape_id)))
+        self._find(shape_id)
+        return self._meshes.get(shape_id, lambda: mesh_of(self._build(shape_id)))
 
     def parts(self, shape_id: str) -> trimesh.Scene:
         """Geometry with materials, in the canonical frame. Shared: do not change it."""
-        self._known(shape_id)
-        return self._scenes.get(shape_id, lambda: scene_with_pictures(self._built(shape_id), self._pictures_folder))
+        self._find(shape_id)
+        return self._scenes.get(shape_id, lambda: scene_with_pictures(self._build(shape_id), self._pictures_folder))
 
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB, +Z up, metres; the same bytes every time."""
-        record = self._known(shape_id)
-        return self._glbs.get(shape_id, lambda: self._stored_glb(record))
+        record = self._find(shape_id)
+        return self._glbs.get(shape_id, lambda: self._glb(record))
 
-    def _stored_glb(self, record: Shape) -> bytes:
+    def _glb(self, record: Shape) -> bytes:
         return derive(self._glb_path(record), lambda: _glb(self.parts(record.id)), whole_glb)
 
     def is_built(self, shape_id: str) -> bool:
         """Whether the model and the support surfaces of a shape are on disk."""
-        record = self._known(shape_id)
+        record = self._find(shape_id)
         return self._glb_path(record).is_file() and self._surfaces_path(record).is_file()
 
     def _glb_path(self, record: Shape) -> Path:
@@ -160,7 +160,7 @@ class BuiltInLibrary:
     def _surfaces_path(self, record: Shape) -> Path:
         return self._folder / f"{record.content_hash}.{SURFACES_VERSION}.surfaces.json"
 
-    def _built(self, shape_id: str) -> list[tuple[Material, Solid]]:
+    def _build(self, shape_id: str) -> list[tuple[Material, Solid]]:
         """The latest solids, cached because a request for the mesh is usually followed by one for the materials."""
         return self._solids.get(shape_id, lambda: built_once(self._design(shape_id)))
 
@@ -169,7 +169,7 @@ class BuiltInLibrary:
         base = self._designs[base_id(shape_id)]
         return made_by_id(shape_id, base) if is_made(shape_id) else base
 
-    def _known(self, shape_id: str) -> Shape:
+    def _find(self, shape_id: str) -> Shape:
         if is_made(shape_id) and base_id(shape_id) in self._designs:
             return self._made.get(shape_id, lambda: _record(self._design(shape_id)))
         if shape_id not in self._designs:
@@ -182,7 +182,7 @@ class BuiltInLibrary:
             record = self._records.setdefault(shape_id, _record(self._designs[shape_id]))
         return record
 
-    def _measured(self, record: Shape) -> tuple[SupportSurface, ...]:
+    def _measure(self, record: Shape) -> tuple[SupportSurface, ...]:
         def measure() -> bytes:
             return _surfaces_to_json(support_surfaces(self.mesh(record.id)))
 

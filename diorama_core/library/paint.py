@@ -37,9 +37,9 @@ def repaint(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None =
         if _material_key(mesh) != main or main is None:
             continue
         if main == _PLAIN:
-            mesh.visual = trimesh.visual.TextureVisuals(material=_overridden(physically_based(mesh), colour, finish))
+            mesh.visual = trimesh.visual.TextureVisuals(material=_override(physically_based(mesh), colour, finish))
             continue
-        new = new or _overridden(physically_based(mesh), colour, finish)
+        new = new or _override(physically_based(mesh), colour, finish)
         mesh.visual = trimesh.visual.TextureVisuals(uv=mesh.visual.uv, material=new)
     return scene
 
@@ -84,7 +84,7 @@ def physically_based(mesh: trimesh.Trimesh) -> PBRMaterial:
     return material if isinstance(material, PBRMaterial) else material.to_pbr()
 
 
-def _overridden(source: PBRMaterial, colour: Colour | None, finish: Finish | None) -> PBRMaterial:
+def _override(source: PBRMaterial, colour: Colour | None, finish: Finish | None) -> PBRMaterial:
     coloured = source.copy() if colour is None else recolour(source, colour)
     if finish is not None:
         coloured.name = f"{coloured.name or 'material'} {finish}"

@@ -32,7 +32,7 @@ class PartNotes:
     stretches: tuple[bool, bool, bool] | None = None
     """Along the shape's depth, width and height; None where its thickness decides (`stretch`)."""
 
-    def transformed(self, T: Float[np.ndarray, "4 4"]) -> PartNotes:
+    def transform(self, T: Float[np.ndarray, "4 4"]) -> PartNotes:
         """The notes in another frame, whose axes may have another unit but are not mirrored."""
         if self.joint is None:
             return self
@@ -80,5 +80,5 @@ def transform(mesh: trimesh.Trimesh, T: Float[np.ndarray, "4 4"]) -> trimesh.Tri
     """A copy of a mesh in another frame, with its notes."""
     made = mesh.copy().apply_transform(T)
     if (notes := notes_of(mesh)) is not None:
-        made.metadata[KEY] = notes.transformed(T).as_json()
+        made.metadata[KEY] = notes.transform(T).as_json()
     return made

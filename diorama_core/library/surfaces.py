@@ -178,7 +178,7 @@ def _is_walled_off(
     level = np.maximum(start[:, 2], end[:, 2]) + WALL_M
     start[:, 2] = end[:, 2] = level
     rays = np.hstack([start, end - start]).astype(np.float32)
-    walled[roofed] = caster.occluded(rays, far=1.0)
+    walled[roofed] = caster.is_occluded(rays, far=1.0)
     return walled
 
 
@@ -254,4 +254,4 @@ def _is_enclosed(surface: SupportSurface, caster: RayScene) -> bool:
         return False
     middle = [*surface.polygon[:, :2].mean(axis=0), surface.height_m + 0.5 * surface.clearance_m]
     ahead = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
-    return bool(caster.occluded(np.column_stack([np.tile(middle, (4, 1)), ahead]).astype(np.float32)).all())
+    return bool(caster.is_occluded(np.column_stack([np.tile(middle, (4, 1)), ahead]).astype(np.float32)).all())

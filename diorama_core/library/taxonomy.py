@@ -133,7 +133,7 @@ _SLIP_LETTERS, _SLIP_RATIO = 8, 0.75
 """A word of fewer letters is misspelt by one letter too many or too few; and how alike both must be."""
 
 
-def _misspelt(key: str, words: tuple[str, ...]) -> str | None:
+def _correct(key: str, words: tuple[str, ...]) -> str | None:
     """The word that a misspelt one stands for: people get the first letter right, and other words are not slips."""
     if len(key) < 4 or _OTHER_THINGS.intersection(_singulars(key)):
         return None
@@ -157,7 +157,7 @@ def resolve(word: str) -> Resolution:
         for form in _singulars(" ".join(parts[start:])):
             if form in table:
                 return Resolution(table[form], exact=True)
-    near = _misspelt(key, tuple(table))
+    near = _correct(key, tuple(table))
     if near is not None:
         entry = table[near]
         return Resolution(entry, exact=False, note=f"'{word}' is not a known class; read as '{entry.name}'")

@@ -49,11 +49,11 @@ class OwnModels:
     in_builds: bool = False
     """Whether builds and rooms made from words may use these models."""
 
-    def named(self, shape_id: str, name: str) -> OwnModels:
+    def rename(self, shape_id: str, name: str) -> OwnModels:
         """With a model's name; an empty one leaves it to the caption."""
         return replace(self, names=_with(self.names, shape_id, name))
 
-    def filed(self, shape_id: str, folder: str) -> OwnModels:
+    def file(self, shape_id: str, folder: str) -> OwnModels:
         """With a model in a folder, which is there as long as something is in it; an empty name is no folder."""
         return replace(self, folders=_with(self.folders, shape_id, folder))
 
@@ -61,14 +61,14 @@ class OwnModels:
         """With a model deleted."""
         return replace(self, deleted=(*(i for i in self.deleted if i != shape_id), shape_id))
 
-    def restored(self, shape_id: str) -> OwnModels:
+    def restore(self, shape_id: str) -> OwnModels:
         """With a model deleted no more."""
         return replace(self, deleted=tuple(i for i in self.deleted if i != shape_id))
 
-    def superseded(self, shape_id: str, by: str) -> OwnModels:
+    def supersede(self, shape_id: str, by: str) -> OwnModels:
         """With a corrected model in the place of the one that it was made from."""
-        known = self.without(shape_id).restored(by)
-        return known.named(by, self.names.get(shape_id, "")).filed(by, self.folders.get(shape_id, ""))
+        known = self.without(shape_id).restore(by)
+        return known.rename(by, self.names.get(shape_id, "")).file(by, self.folders.get(shape_id, ""))
 
 
 class _File(BaseModel):
@@ -164,7 +164,7 @@ class UserLibrary:
         """Keep what their owner says of the uploads; raises `LibraryError` when it cannot be written."""
         write_own_models(library_folder(OWN) / ORDER, models)
 
-    def offered(self) -> OfferedShapes:
+    def offer(self) -> OfferedShapes:
         """What builds and words choose from: not the uploads, unless their owner asked for that."""
         models = self.own_models
         ids = models.deleted if models.in_builds else (s.id for s in self.uploads())
@@ -224,9 +224,9 @@ class ProjectShapes(UserLibrary):
         """The records of all uploads; see `UserLibrary.uploads`."""
         return self.shared.uploads()
 
-    def offered(self) -> OfferedShapes:
+    def offer(self) -> OfferedShapes:
         """What builds and words choose from: neither the project's own shapes nor, unless asked for, uploads."""
-        return OfferedShapes(self, self.shared.offered().left_out | frozenset(s.id for s in self._project_shapes()))
+        return OfferedShapes(self, self.shared.offer().left_out | frozenset(s.id for s in self._project_shapes()))
 
     def _project_shapes(self) -> tuple[Shape, ...]:
         return () if self._of_project is None else self._of_project.shapes()
@@ -273,7 +273,7 @@ def offer_shapes(library: ShapeLibrary) -> ShapeLibrary:
     Raises:
         LibraryError: what is said of the uploads cannot be read.
     """
-    return library.offered() if isinstance(library, UserLibrary) else library
+    return library.offer() if isinstance(library, UserLibrary) else library
 
 
 def _identity(library: ShapeLibrary) -> ShapeLibrary:

@@ -58,7 +58,7 @@ class Moge2:
             {"points": (1, *small, 3), "normal": (1, *small, 3), "mask": (1, *small), scale: SINGLE},
             gaps=True,
         )
-        known = None if intrinsics is None else intrinsics.scaled(small[1], small[0])
+        known = None if intrinsics is None else intrinsics.resize(small[1], small[0])
         try:
             seen = recover(out["points"][0], out["normal"][0], out["mask"][0], float(np.ravel(out[scale])[0]), known)
         except UnavailableError as error:
@@ -171,7 +171,7 @@ class Metric3d:
         normals = _channels_last(out["predicted_normal"].reshape(out["predicted_normal"].shape[-3:]))[window]
         if not (depth > 0).any():
             raise NetworkError(self.graph, "the depth network sees no geometry in this picture; use --profile embedded")
-        small = k.scaled(inner_w, inner_h)
+        small = k.resize(inner_w, inner_h)
         depth32 = depth.astype(np.float32)
         return resize_depth(SeenDepth(depth32, _orient_normals(normals, depth32, small), small), height, width, k)
 
@@ -222,7 +222,7 @@ def resize_depth(seen: SeenDepth, height: int, width: int, intrinsics: Intrinsic
     return SeenDepth(
         cv2.resize(seen.depth_m, size, interpolation=cv2.INTER_NEAREST_EXACT),
         cv2.resize(seen.normals_camera, size, interpolation=cv2.INTER_NEAREST_EXACT),
-        intrinsics or seen.intrinsics.scaled(width, height),
+        intrinsics or seen.intrinsics.resize(width, height),
     )
 
 
@@ -255,7 +255,7 @@ class DepthAnything3:
         session = self.pool.get(self.graph)
         side = session.side_px("image", SIDE)
         out = session.run({"image": self.pixels(rgb, side)}, {"depth": (1, 1, side, side), "sky": (1, 1, side, side)})
-        square = k.scaled(side, side)
+        square = k.resize(side, side)
         # Metres for the focal length of the picture as the network saw it; stretched, its two sides have two.
         metres = out["depth"][0, 0] * np.float32((square.fx + square.fy) / 2 / CANONICAL_FOCAL_PX)
         depth = np.where((out["sky"][0, 0] < SKY) & (metres > 0), metres, 0.0).astype(np.float32)

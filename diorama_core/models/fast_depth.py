@@ -45,7 +45,7 @@ class FastDepth:
         """
         height, width = rgb.shape[:2]
         k = intrinsics or Intrinsics(width, height, USUAL_FOCAL * width, USUAL_FOCAL * width, width / 2, height / 2)
-        graph = derive_graph(f"fast-depth-{self.weights}", self._converted)
+        graph = derive_graph(f"fast-depth-{self.weights}", self._convert)
         pixels = resize(rgb, (SIDE_PX, SIDE_PX)).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255)
         shape = (1, 1, SIDE_PX, SIDE_PX)
         seen = self.pool.get(graph).run({"input": np.ascontiguousarray(pixels)}, {"output": shape})["output"]
@@ -53,7 +53,7 @@ class FastDepth:
         depth = np.exp(cv2.resize(small.astype(np.float32), (width, height)))
         return SeenDepth(depth, np.zeros_like(rgb, np.float32), k, np.full_like(depth, LOG_SIGMA), SCALE_LOG_SIGMA)
 
-    def _converted(self) -> bytes:
+    def _convert(self) -> bytes:
         from diorama_core.models.tflite_graph import onnx_graph  # with two libraries that nothing else needs
 
         return onnx_graph(self.published.read_bytes())

@@ -58,14 +58,14 @@ class Network:
         return sum(f.bytes or 0 for f in self.files)
 
     @property
-    def verified(self) -> bool:
+    def has_checksums(self) -> bool:
         """Whether published checksums identify all files; otherwise only what the network answers does."""
         return all(f.sha256 for f in self.files)
 
     @property
-    def checked_by(self) -> str:
+    def check_words(self) -> str:
         """How a download is checked, in words for people."""
-        if self.verified:
+        if self.has_checksums:
             return "published checksum"
         known = "size checked; " if all(f.bytes for f in self.files) else ""
         return f"{known}unverified (no published checksum): tried on a photo, then held to the first download's"

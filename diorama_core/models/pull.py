@@ -161,7 +161,7 @@ def _revision(store: ModelStore, network: Network) -> str:
     pinned = network.revision or ""
     if len(pinned) == 40:
         return pinned
-    recorded = store.installed(network).revision
+    recorded = store.record(network).revision
     if recorded:
         return recorded
     from huggingface_hub import HfApi

@@ -109,11 +109,11 @@ class Recogniser:
         return self._best(rgb, threshold, most, ALIKE_IOU)
 
     def _best(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int, iou: float) -> Detections:
-        every = join([look for area in self.areas_px for look in self._proposed(rgb, area)])
+        every = join([look for area in self.areas_px for look in self._propose(rgb, area)])
         detections = without_doubles(every.rows(every.scores >= threshold), iou, across_classes=True)
         return detections.rows(np.arange(min(most, len(detections))))
 
-    def _proposed(self, rgb: UInt8[np.ndarray, "h w 3"], area_px: int) -> list[Detections]:
+    def _propose(self, rgb: UInt8[np.ndarray, "h w 3"], area_px: int) -> list[Detections]:
         """What is seen in the picture at a size, as it is and mirrored."""
         pixels, scale = fit(rgb, area_px)
         height, width = pixels.shape[2:]

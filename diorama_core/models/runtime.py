@@ -135,7 +135,7 @@ class Session:
             converted: dict[str, np.ndarray] = {
                 n: v.astype(_TYPES[self.inputs[n].type], copy=False) for n, v in feeds.items()
             }
-            values = self._raw.run(None, converted) if progress is None else self._watched(converted, progress)
+            values = self._raw.run(None, converted) if progress is None else self._run(converted, progress)
         except Cancelled:
             raise
         except Exception as error:  # onnxruntime's errors have no base of their own
@@ -147,7 +147,7 @@ class Session:
             self.check(name, answers.get(name), dims, gaps=gaps)
         return {n: v.astype(np.float32) if v.dtype == np.float16 else v for n, v in answers.items()}
 
-    def _watched(self, feeds: Mapping[str, np.ndarray], progress: Progress) -> list[Any]:
+    def _run(self, feeds: Mapping[str, np.ndarray], progress: Progress) -> list[Any]:
         """Compute in a thread; tell the graph to stop when the work was cancelled."""
         onnxruntime = load_onnxruntime()
 

@@ -93,7 +93,7 @@ class ModelStore:
         """Where the network's files lie."""
         return self.folder / network.id
 
-    def installed(self, network: Network) -> Installed:
+    def record(self, network: Network) -> Installed:
         """What was checked and recorded; nothing where the record is absent or damaged."""
         path = self.folder_of(network) / RECORD
         try:
@@ -106,7 +106,7 @@ class ModelStore:
         """Whether every file is there, whole and checked, and may be used."""
         if network.id in self.without:
             return False
-        record = self.installed(network)
+        record = self.record(network)
         return all(self._whole(network, f, record) for f in network.files)
 
     def _whole(self, network: Network, file: ModelFile, record: Installed) -> bool:
@@ -116,7 +116,7 @@ class ModelStore:
 
     def missing(self, network: Network) -> tuple[ModelFile, ...]:
         """Files that still have to be fetched."""
-        record = self.installed(network)
+        record = self.record(network)
         return tuple(f for f in network.files if not self._whole(network, f, record))
 
     def path(self, network: Network, file: str) -> Path:
@@ -137,7 +137,7 @@ class ModelStore:
         record, about = self.folder_of(network) / RECORD, path.stat()
         if about.st_mtime_ns <= record.stat().st_mtime_ns:
             return
-        if _digest(path, about.st_mtime_ns, about.st_size) != self.installed(network).files[file].sha256:
+        if _digest(path, about.st_mtime_ns, about.st_size) != self.record(network).files[file].sha256:
             raise NetworkError(path, "this file was changed since it was fetched; run: diorama models verify")
 
     def network_of(self, graph: Path) -> Network | None:
@@ -150,7 +150,7 @@ class ModelStore:
 
     def identity(self, network: Network) -> str:
         """Changes with the weights: for cache keys."""
-        record = self.installed(network)
+        record = self.record(network)
         digests = "".join(record.files[f.path].sha256 for f in network.files if f.path in record.files)
         return f"{network.id}:{hashlib.sha256(digests.encode()).hexdigest()[:12]}"
 
@@ -167,7 +167,7 @@ class ModelStore:
         Raises:
             UnavailableError: when its content is not what the manifest (or an earlier pull) names; it is deleted then.
         """
-        record = self.installed(network)
+        record = self.record(network)
         digest_of_file = digest or sha256_of(arrived)
         key = f"{network.id}@{revision}/{file.path}"
         first = self._first_seen()
@@ -213,12 +213,12 @@ class ModelStore:
         if not source.is_dir():
             raise InputError(f"{source}: this is no folder; give the folder that holds the networks' files")
         before = {n.id for n in NETWORKS if self.has(n)}
-        taken = sum(self._taken_up(source, network, file) for network in NETWORKS for file in self.missing(network))
+        taken = sum(self._take_up(source, network, file) for network in NETWORKS for file in self.missing(network))
         if not taken:
             raise InputError(f"{source}: {_why_nothing(source, [n for n in NETWORKS if n.id not in before])}")
         return tuple(n.id for n in NETWORKS if n.id not in before and self.has(n))
 
-    def _taken_up(self, source: Path, network: Network, file: ModelFile) -> bool:
+    def _take_up(self, source: Path, network: Network, file: ModelFile) -> bool:
         for candidate in _candidates(source, network, file):
             about = candidate.stat()
             digest = _digest(candidate, about.st_mtime_ns, about.st_size)
@@ -233,7 +233,7 @@ class ModelStore:
 
     def check(self, network: Network) -> Check:
         """Read every byte of an installed network and compare with the record and the manifest."""
-        record = self.installed(network)
+        record = self.record(network)
         if not record.files:
             return Check(network, "absent")
         absent = [f.path for f in self.missing(network)]

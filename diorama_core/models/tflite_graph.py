@@ -55,11 +55,11 @@ class _Conversion:
         self.constants: list[onnx.TensorProto] = []
         self._writers = {
             tflite.BuiltinOperator.QUANTIZE: self._same,
-            tflite.BuiltinOperator.PAD: self._padded,
-            tflite.BuiltinOperator.CONV_2D: self._convolved,
-            tflite.BuiltinOperator.DEPTHWISE_CONV_2D: self._convolved_by_channel,
-            tflite.BuiltinOperator.RESIZE_NEAREST_NEIGHBOR: self._enlarged,
-            tflite.BuiltinOperator.ADD: self._added,
+            tflite.BuiltinOperator.PAD: self._pad,
+            tflite.BuiltinOperator.CONV_2D: self._convolve,
+            tflite.BuiltinOperator.DEPTHWISE_CONV_2D: self._convolve_by_channel,
+            tflite.BuiltinOperator.RESIZE_NEAREST_NEIGHBOR: self._enlarge,
+            tflite.BuiltinOperator.ADD: self._add,
         }
 
     def add(self, operator: Any) -> None:
@@ -77,17 +77,17 @@ class _Conversion:
     def _same(self, operator: Any, inputs: list[int], output: int) -> None:
         self._node("Identity", [f"t{inputs[0]}"], f"t{output}")
 
-    def _padded(self, operator: Any, inputs: list[int], output: int) -> None:
+    def _pad(self, operator: Any, inputs: list[int], output: int) -> None:
         before, after = self._numbers(inputs[1]).reshape(4, 2)[list(_CHANNELS_FIRST)].T
         pads = self._constant(f"c{inputs[1]}_{output}", np.concatenate([before, after]).astype(np.int64))
         self._node("Pad", [f"t{inputs[0]}", pads], f"t{output}")
 
-    def _convolved(self, operator: Any, inputs: list[int], output: int) -> None:
+    def _convolve(self, operator: Any, inputs: list[int], output: int) -> None:
         options = _options(operator, tflite.Conv2DOptions())
         kernel = self._real(inputs[1], axis=0).transpose(0, 3, 1, 2)
         self._convolution(options, kernel, 1, inputs, output)
 
-    def _convolved_by_channel(self, operator: Any, inputs: list[int], output: int) -> None:
+    def _convolve_by_channel(self, operator: Any, inputs: list[int], output: int) -> None:
         options = _options(operator, tflite.DepthwiseConv2DOptions())
         kernel = self._real(inputs[1], axis=3).transpose(3, 0, 1, 2)
         self._convolution(options, kernel, len(kernel), inputs, output)
@@ -113,18 +113,18 @@ class _Conversion:
             strides=[options.StrideH(), options.StrideW()],
             auto_pad="SAME_UPPER" if same else "VALID",
         )
-        self._clipped(output)
+        self._clip(output)
 
-    def _enlarged(self, operator: Any, inputs: list[int], output: int) -> None:
+    def _enlarge(self, operator: Any, inputs: list[int], output: int) -> None:
         sizes = self._constant(f"c{output}_size", np.array(self.shape(output), np.int64))
         how = {"mode": "nearest", "coordinate_transformation_mode": "asymmetric", "nearest_mode": "floor"}
         self._node("Resize", [f"t{inputs[0]}", "", "", sizes], f"t{output}", **how)
 
-    def _added(self, operator: Any, inputs: list[int], output: int) -> None:
+    def _add(self, operator: Any, inputs: list[int], output: int) -> None:
         self._node("Add", [f"t{i}" for i in inputs], f"s{output}")
-        self._clipped(output)
+        self._clip(output)
 
-    def _clipped(self, output: int) -> None:
+    def _clip(self, output: int) -> None:
         """Clip a sum to what eight bits hold."""
         scale, zero = self._scale(output)
         ends = [self._constant(f"c{output}_{end}", np.float32(scale[0] * (end - zero[0]))) for end in (-128, 127)]

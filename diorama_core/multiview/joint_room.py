@@ -144,7 +144,7 @@ def _lines(photos: Sequence[SeenRoom]) -> tuple[_Line, ...]:
     weighted: list[tuple[Plane, float, float]] = []
     for photo in photos:
         for wall in photo.architecture.by_role("wall"):
-            if wall.seen:
+            if wall.is_seen:
                 away = abs(float(photo.camera.position @ wall.normal) - wall.offset)
                 weight = wall.confidence * _length(wall) / max(away, 0.5)
                 weighted.append((wall, weight, away))
@@ -226,7 +226,7 @@ def _evidence(
         near = np.exp(-np.linalg.norm(grid - photo.camera.position[:2], axis=1) / SETTINGS.range_m)
         says += np.where(within, np.where(seen, near, SETTINGS.beside_view * near), 0.0)
         for wall in photo.architecture.by_role("wall"):
-            if wall.seen:
+            if wall.is_seen:
                 line = placed[id(wall)]
                 behind = grid @ line.normal < line.offset
                 hidden = behind & seen & _are_behind_piece(grid, photo.camera, wall)

@@ -281,4 +281,4 @@ def camera_of(
 
 
 def _unposed(name: str, photo: Photo, camera: Camera) -> UnposedPhoto:
-    return UnposedPhoto(name, photo.rgb, camera.intrinsics.scaled(photo.width, photo.height).fx)
+    return UnposedPhoto(name, photo.rgb, camera.intrinsics.resize(photo.width, photo.height).fx)

@@ -74,8 +74,8 @@ def silhouettes(world: World, camera: Camera, instances: Collection[int]) -> Boo
     step = max(1, max(k.width, k.height) // SILHOUETTE_PX)
     x, y = np.meshgrid(np.arange(step // 2, k.width, step) + 0.5, np.arange(step // 2, k.height, step) + 0.5)
     hits = world.caster.first_hits(PinholeView(camera).rays(np.stack([x, y], axis=-1)))
-    seen = np.zeros(hits.found.shape, np.uint8)
-    seen[hits.found] = np.isin(world.instances(hits.triangle[hits.found]), list(instances))
+    seen = np.zeros(hits.is_hit.shape, np.uint8)
+    seen[hits.is_hit] = np.isin(world.instances(hits.triangle[hits.is_hit]), list(instances))
     return cv2.resize(seen, (k.width, k.height), interpolation=cv2.INTER_NEAREST).astype(bool)
 
 

@@ -283,7 +283,7 @@ def _ids_in(tracks: Sequence[Track], index: int) -> dict[int, str]:
 def placed_picture(read: ReadPhoto, ids: Mapping[int, str]) -> PlacedPicture:
     """A read photo with the ids that its objects have in the scene, by box."""
     named = tuple(replace(item, id=ids.get(k, f"mark-{k}")) for k, item in enumerate(read.objects))
-    k = read.posed.camera.intrinsics.scaled(read.inputs.photo.width, read.inputs.photo.height)
+    k = read.posed.camera.intrinsics.resize(read.inputs.photo.width, read.inputs.photo.height)
     camera = Camera(k, read.posed.camera.T_world_camera)
     return PlacedPicture(read.inputs, named, camera, read.stages.filler)
 

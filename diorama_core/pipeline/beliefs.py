@@ -113,10 +113,10 @@ def _plane_sigma(scene: Scene, plane: Plane, noise: ObservationNoise, settings: 
     """Standard deviation of a plane's place; the floor is where the scale has it, which has a deviation of its own."""
     if plane.role == "floor" or scene.camera is None:
         return 0.0 if plane.role == "floor" else None
-    if noise.measured and plane.seen:
+    if noise.measured and plane.is_seen:
         away = abs(float(plane.normal @ scene.camera.position) - plane.offset)
         return round(float(np.hypot(noise.along * away, noise.across_m)), 3)
-    return settings.ceiling_m if plane.role == "ceiling" and plane.seen else settings.wall_m[not plane.seen]
+    return settings.ceiling_m if plane.role == "ceiling" and plane.is_seen else settings.wall_m[not plane.is_seen]
 
 
 def presence_of(score: float, settings: BeliefSettings = SETTINGS) -> float:

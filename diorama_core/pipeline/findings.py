@@ -40,7 +40,7 @@ def drawing(name: str, known: Mapping[str, Any]) -> Segments:
         camera, edges = artefact.camera, [box_edges(c.corners_world) for c in artefact.cuboids]
     elif name == "architecture":
         camera = known["measured_geometry"].camera
-        edges = [plane_edges(p) for p in artefact.architecture.planes if p.seen]
+        edges = [plane_edges(p) for p in artefact.architecture.planes if p.is_seen]
     else:
         return ()
     lines = np.round(visible_segments(camera, edges).reshape(-1, 4), 1)

@@ -30,7 +30,7 @@ from diorama_core.scene.types import Architecture, Camera, Scene
 def given_camera(camera: Camera) -> CameraEstimate:
     """A camera that is known, as the stage that finds it would say it."""
     reading = CameraHypothesis(camera.intrinsics, camera.T_world_camera[:3, :3], 1.0)
-    return CameraEstimate((reading,), 1.0, CameraSource.given(), height_m=float(camera.position[2]))
+    return CameraEstimate((reading,), 1.0, CameraSource.known(), height_m=float(camera.position[2]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,7 @@ class GivenRoom:
             progress: reports and cancellation.
         """
         walls = self.architecture.by_role("wall")
-        seen = sum(w.seen for w in walls)
+        seen = sum(w.is_seen for w in walls)
         source = RoomSource(RoomMethod.SEVERAL_VIEWS, walls_found=seen, walls_assumed=len(walls) - seen)
         sure = float(np.mean([w.confidence for w in walls])) if walls else 0.0
         supports = resolve_supports(geometry, self.architecture)

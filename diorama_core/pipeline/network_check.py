@@ -85,7 +85,7 @@ def rejected(
     Returns:
         What was found of those that were deleted.
     """
-    unverified = [n for n in NETWORKS if n.id in network_ids and not n.verified]
+    unverified = [n for n in NETWORKS if n.id in network_ids and not n.has_checksums]
     failed = []
     for k, network in enumerate(unverified):
         part = progress.part(k / len(unverified), (k + 1) / len(unverified))

@@ -79,7 +79,7 @@ def prepare_library(
     if views:
         broken = {shape_id for shape_id, _ in failures}
         usable = [s for s in shapes if s.id not in broken]
-        ImageSearch(library).prepared(usable, progress.part(0.7, 1.0), pool, name)
+        ImageSearch(library).prepare(usable, progress.part(0.7, 1.0), pool, name)
     return Prepared(len(shapes), len(missing) - len(failures), tuple(sorted(failures)))
 
 

@@ -103,13 +103,13 @@ class AppearanceLikelihood:
         s, covered = self.surface, self.seen.covered
         weight = np.where(s.known & (s.weight == 0), 1.0, self.seen.weight)
         weight = np.where(s.hides(hits), 0.0, weight)
-        missed = np.clip(2 * np.abs(covered - hits.covered) - 1, 0.0, 1.0) * weight
-        depth = np.where(hits.covered, hits.depth_m, 0.0)
+        missed = np.clip(2 * np.abs(covered - hits.is_hit) - 1, 0.0, 1.0) * weight
+        depth = np.where(hits.is_hit, hits.depth_m, 0.0)
         off = np.full(depth.shape, np.inf)
         for beside in self._neighbours[: None if exact else 1]:
             gap = np.abs(depth - s.depth_m[beside])
             off = np.minimum(off, np.where(s.weight[beside] > 0, gap, np.inf))
-        inside = np.where(hits.covered, _softly(off / (self.settings.half_depth * s.tolerance_m), 4), 0.0)
+        inside = np.where(hits.is_hit, _softly(off / (self.settings.half_depth * s.tolerance_m), 4), 0.0)
         return missed.sum(axis=1) + inside @ (s.weight * np.clip(2 * covered - 1, 0.0, 1.0))
 
     def _colour_mismatch(self, appearance: ShapeAppearance, hits: ShapeHits, exact: bool) -> Float[np.ndarray, "p"]:
@@ -124,17 +124,17 @@ class AppearanceLikelihood:
             hits = appearance.opaque_caster.cast(
                 self.seen.origin_world, self.seen.directions_world[indices], hits.poses
             )
-        face = np.where(hits.covered, hits.triangles, 0)
+        face = np.where(hits.is_hit, hits.triangles, 0)
         fit = _LightFit(hits.normals_world.astype(np.float32), light[face], variance[face], self.settings)
-        strength, tint = fit.fitted(self.log_rgb[indices], hits.covered)
+        strength, tint = fit.fitted(self.log_rgb[indices], hits.is_hit)
         lit = fit.lit(strength, tint)
         off = np.full(face.shape, np.inf, np.float32)
         for beside in self._neighbours[: None if exact else 1, indices]:
             cost = fit.disagreement(self.log_rgb[beside] - lit)
             off = np.minimum(off, np.where(self._own[beside], cost, np.inf))
-        cost = np.where(hits.covered, _softly(off / self.settings.half_colour, 2), 0.0).sum(axis=1)
+        cost = np.where(hits.is_hit, _softly(off / self.settings.half_colour, 2), 0.0).sum(axis=1)
         share = (cost + self.settings.familiar_cells * self.settings.familiar_share) / (
-            hits.covered.sum(axis=1) + self.settings.familiar_cells
+            hits.is_hit.sum(axis=1) + self.settings.familiar_cells
         )
         unlikely = (tint**2).sum(axis=1) / self.settings.tint_sigma**2 + (strength[:, 1:] ** 2).sum(
             axis=1

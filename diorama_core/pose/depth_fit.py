@@ -242,7 +242,7 @@ class DepthFit:
     ) -> tuple[Float[np.ndarray, "p r 7"], Float[np.ndarray, "p r"], Float[np.ndarray, "p r"]]:
         """Point to plane along the rays that meet the shape."""
         hits = caster.cast(self.seen.origin_world, self.points.directions_world, poses)
-        depth = np.where(hits.covered, hits.depth_m, 0.0)
+        depth = np.where(hits.is_hit, hits.depth_m, 0.0)
         met = self.seen.origin_world + depth[..., None] * self.points.directions_world
         normals = hits.normals_world
         # Many rays see one surface; together they should not outvote the outline. Noise is each ray's own.
@@ -250,7 +250,7 @@ class DepthFit:
         sigma = np.hypot(looseness * (0.008 + 0.006 * self.points.depth_m), self.points.spread_m / np.sqrt(alike))
         r = (normals * (met - self.points.points_world)).sum(axis=-1) / sigma
         facing = np.abs((normals * self.points.directions_world).sum(axis=-1))
-        w = np.where(hits.covered & (facing > self.settings.grazing), 1.0 / (1.0 + (r / 2.0) ** 2), 0.0)
+        w = np.where(hits.is_hit & (facing > self.settings.grazing), 1.0 / (1.0 + (r / 2.0) ** 2), 0.0)
         J = self._slopes(poses, met, normals) / sigma[:, None]
         return J, r, w * (40.0 / max(len(sigma), 1))
 

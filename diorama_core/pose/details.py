@@ -58,7 +58,7 @@ class InnerEdges:
         return np.array([self._pose_score(hits, k) for k in range(len(hits.poses))])
 
     def _pose_score(self, hits: ShapeHits, pose: int) -> float:
-        covered = hits.covered[pose]
+        covered = hits.is_hit[pose]
         if not self.inside.any() or not covered.any():
             return 0.0
         depth = np.where(covered, hits.depth_m[pose], 1.0)
@@ -141,7 +141,7 @@ class Details:
 
     def explained_by_parts(self, appearance: ShapeAppearance, hits: ShapeHits) -> float:
         """Share of the picture's variation of colour that lies between the parts of a shape, 0 to 1."""
-        shown = hits.covered[0] & (self.own > self.settings.whole_cell)
+        shown = hits.is_hit[0] & (self.own > self.settings.whole_cell)
         rgba = appearance.face_rgba[np.where(shown, hits.triangles[0], 0)]
         shown &= rgba[:, 3] > 0
         if shown.sum() < self.settings.min_part_cells:

@@ -56,7 +56,7 @@ class Evidence:
     def errors_of(self, caster: ShapeCaster, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """As `errors`, of a shape that the rays have met."""
         if self.surface is None:
-            return self._outline_errors(caster, hits.poses, hits.covered)
+            return self._outline_errors(caster, hits.poses, hits.is_hit)
         weights = [
             self.settings.silhouette_weight_with_depth * (0.3 + 0.7 * self.seen.mask_trust),
             self.settings.depth_weight,
@@ -94,7 +94,7 @@ class Evidence:
         inside = self.seen.window.is_in_photo(k.width, k.height).astype(np.float64)
         before = np.where(surface.known, inside, self.seen.weight)
         weight = np.where(surface.hides(hits), 0.0, before)
-        return soft_iou(self.seen.covered, hits.covered.astype(np.float64), weight)
+        return soft_iou(self.seen.covered, hits.is_hit.astype(np.float64), weight)
 
     def log_scores(
         self,

@@ -54,7 +54,7 @@ class ObjectSurface:
     def agreement(self, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """0 to 1: nearness of depth and of normals over the object's measured cells."""
         is_informative, weight = self._told, self.weight[self._told]
-        depth, covered = hits.depth_m[:, is_informative], hits.covered[:, is_informative]
+        depth, covered = hits.depth_m[:, is_informative], hits.is_hit[:, is_informative]
         off = (np.where(covered, depth, 0.0) - self.depth_m[is_informative]) / self.tolerance_m[is_informative]
         score = np.where(covered, np.exp(-(off**2)), 0.0)
         if self.normals_share >= self.settings.min_normals_share:
@@ -69,7 +69,7 @@ class ObjectSurface:
 
     def hides(self, hits: ShapeHits) -> Bool[np.ndarray, "p n"]:
         """Where something was measured in front of the shape, so that the cell is no observation of it."""
-        return self.known & (self.weight == 0) & hits.covered & (hits.depth_m > self.depth_m + 2 * self.tolerance_m)
+        return self.known & (self.weight == 0) & hits.is_hit & (hits.depth_m > self.depth_m + 2 * self.tolerance_m)
 
 
 def measured_surface(

@@ -118,5 +118,5 @@ def _unblocked_strength(
     lit = np.flatnonzero(strength > 0)
     rays = np.concatenate([origins, toward], axis=1).take(lit, axis=0).astype(np.float32)
     light = strength.copy()
-    light[lit[blockers.occluded(rays, far=far)]] = 0
+    light[lit[blockers.is_occluded(rays, far=far)]] = 0
     return light

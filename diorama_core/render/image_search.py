@@ -78,7 +78,7 @@ class ImageSearch:
 
     def _rerank(self, worded: FoundShapes, crop: ShapeCrop, k: int, progress: Progress) -> FoundShapes:
         """Order what words found by words and picture alike."""
-        matrix = self.prepared(worded.shapes, progress)
+        matrix = self.prepare(worded.shapes, progress)
         alike = matrix.scores(_query(crop))
         scores = []
         for shape, by_words in zip(worded.shapes, worded.scores, strict=True):
@@ -94,13 +94,13 @@ class ImageSearch:
         by_key: dict[str, list[Shape]] = {}
         for shape in self.library.shapes():
             by_key.setdefault(_key(shape), []).append(shape)
-        matrix = self.prepared(self.library.shapes(), progress)
+        matrix = self.prepare(self.library.shapes(), progress)
         stale = len(matrix.missing_from(by_key))
         near = vector_index(matrix).top(_query(crop), k + stale)
         matches = [(shape, n.score) for n in near for shape in by_key.get(n.key, ())][:k]
         return FoundShapes(tuple(shape for shape, _ in matches), tuple(score for _, score in matches), understand(""))
 
-    def prepared(
+    def prepare(
         self,
         shapes: Sequence[Shape],
         progress: Progress = SILENT,

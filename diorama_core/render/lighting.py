@@ -198,7 +198,7 @@ def _from_window(
     ray = target - origins
     key = np.maximum(dot(normals, ray), 0) * _key_strength(ray, dot(ray, ray), light)
     lit = np.flatnonzero(key > 0)
-    blocked = blockers.occluded(np.concatenate([origins, ray], axis=1).take(lit, axis=0), far=1.0)
+    blocked = blockers.is_occluded(np.concatenate([origins, ray], axis=1).take(lit, axis=0), far=1.0)
     key[lit[blocked]] = 0
     return key[:, None] * light.window_irradiance.astype(np.float32)
 
@@ -230,9 +230,9 @@ def _from_around(
     radiance = ambient(direction, light)
     near = np.flatnonzero(hits.distance < light.reach_m)
     if photographed is not None and photographed.any():
-        near = near[~(photographed[near] & world.photographed(hits.triangle[near]))]
+        near = near[~(photographed[near] & world.is_photo(hits.triangle[near]))]
     if len(near):
-        chosen, toward = hits.chosen(near), direction.take(near, axis=0)
+        chosen, toward = hits.select(near), direction.take(near, axis=0)
         normals, colour = world.rough_appearance(chosen)
         normals = facing(normals, toward)
         points = origins.take(near, axis=0) + toward * chosen.distance[:, None]

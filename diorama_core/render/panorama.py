@@ -17,7 +17,7 @@ from diorama_core.geometry.sphere import directions
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.lighting import Effort, ambient
-from diorama_core.render.picture import lit, looking_along
+from diorama_core.render.picture import light_of, looking_along
 from diorama_core.render.raycast import PinholeView
 from diorama_core.render.shading import shoot
 from diorama_core.render.world import scene_world
@@ -63,7 +63,7 @@ def panorama(
     face_of = np.argmax(away @ SIDES.T, axis=-1)
     for number, forward in enumerate(SIDES):
         view = PinholeView(_face(centre, forward, side))
-        light, blockers = lit(scene, opened, library, world, view)
+        light, blockers = light_of(scene, opened, library, world, view)
         progress.report(number / len(SIDES), "looking around the room")
         shot = shoot(world, blockers, view, light, effort, Progress(token=progress.token))
         beyond = ambient(view.all_rays()[..., 3:].reshape(-1, 3), light).reshape(side, side, 3)

@@ -73,14 +73,14 @@ def picture(
     without = _ids_seen_from_behind(scene, source)
     opened = with_openings(scene)
     world = scene_world(opened, library, textures=textures, photographed=photographed, without=without)
-    lit_world, blockers = lit(scene, opened, library, world, source)
+    lit_world, blockers = light_of(scene, opened, library, world, source)
     light = light or lit_world
     shot = shoot(world, blockers, source, light, effort, progress.part(0.1, 1.0))
     exposure = np.float32(scene.light_settings.exposure)
     return np.concatenate(map_threads(lambda band: _develop(shot, band, exposure), bands(source.height)))
 
 
-def lit(scene: Scene, opened: Scene, library: ShapeLibrary, world: World, view: View) -> tuple[Lighting, RayScene]:
+def light_of(scene: Scene, opened: Scene, library: ShapeLibrary, world: World, view: View) -> tuple[Lighting, RayScene]:
     """The light of a scene as a person set it, or its own, and what casts shadows in it.
 
     Args:
@@ -111,8 +111,8 @@ def instances_seen(
     source = scene_view(scene, view, size)
     world = scene_world(with_openings(scene), library, without=_ids_seen_from_behind(scene, source))
     hits = world.caster.first_hits(source.rays(pixel_centres(source.width, source.height)))
-    shown = np.full(hits.found.shape, -1, dtype=np.int32)
-    shown[hits.found] = world.instances(hits.triangle[hits.found])
+    shown = np.full(hits.is_hit.shape, -1, dtype=np.int32)
+    shown[hits.is_hit] = world.instances(hits.triangle[hits.is_hit])
     return shown
 
 
@@ -226,7 +226,7 @@ def _photo_camera(scene: Scene, size: tuple[int, int] | None) -> Camera:
         shrink = min(1.0, LARGEST_DEFAULT_PX / max(k.width, k.height))
         size = (max(1, round(k.width * shrink)), max(1, round(k.height * shrink)))
     if abs(size[0] / k.width - size[1] / k.height) * max(k.width, k.height) < 1.0:
-        return Camera(k.scaled(*size), scene.camera.T_world_camera)
+        return Camera(k.resize(*size), scene.camera.T_world_camera)
     s = min(size[0] / k.width, size[1] / k.height)
     cx, cy = (size[0] - s * k.width) / 2 + s * k.cx, (size[1] - s * k.height) / 2 + s * k.cy
     return Camera(Intrinsics(size[0], size[1], s * k.fx, s * k.fy, cx, cy), scene.camera.T_world_camera)

@@ -119,8 +119,8 @@ class MeshCaster:
         return self._instances(self._caster.first_hits(rays))
 
     def _instances(self, hits: RayHits) -> Int32[np.ndarray, "*n"]:
-        instance = np.full(hits.found.shape, -1, dtype=np.int32)
-        instance[hits.found] = self._owner[hits.triangle[hits.found]]
+        instance = np.full(hits.is_hit.shape, -1, dtype=np.int32)
+        instance[hits.is_hit] = self._owner[hits.triangle[hits.is_hit]]
         return instance
 
     def buffers(self, view: Camera | View) -> Buffers:
@@ -128,7 +128,7 @@ class MeshCaster:
         view = PinholeView(view) if isinstance(view, Camera) else view
         rays = view.rays(pixel_centres(view.width, view.height))
         hits = self._caster.first_hits(rays)
-        is_hit = hits.found
+        is_hit = hits.is_hit
         depth = np.where(is_hit, hits.distance, 0).astype(np.float32)
         normals = np.zeros((*is_hit.shape, 3), dtype=np.float32)
         normals[is_hit] = facing(self._normals[hits.triangle[is_hit]], rays[is_hit][:, 3:])

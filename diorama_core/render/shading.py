@@ -97,9 +97,9 @@ class _Band:
 def _first_sight(world: World, view: View, rows: slice) -> _Band:
     rays = view.rays(pixel_centres(view.width, rows.stop, rows.start))
     hits = world.caster.first_hits(rays)
-    is_hit = hits.found
+    is_hit = hits.is_hit
     footprint_m = pixel_footprint(view, np.where(is_hit, hits.distance, 0).astype(np.float32))[is_hit]
-    places = world.places(rays[is_hit], hits.chosen(is_hit), footprint_m)
+    places = world.places(rays[is_hit], hits.select(is_hit), footprint_m)
     return _Band(is_hit, rays[is_hit], places, np.where(is_hit, hits.distance, 0).astype(np.float32))
 
 
@@ -110,7 +110,7 @@ def _radiance(
     direction = unit(rays[:, 3:])
     base = places.albedo
     metal = places.metallic[:, None]
-    fallen = _relit(places, fallen, light)
+    fallen = _relight(places, fallen, light)
     out = base * (1 - metal) * fallen + places.emissive
     clear = np.flatnonzero(places.alpha < 0.999)
     if len(clear) and depth < 3:
@@ -123,7 +123,7 @@ def _radiance(
     return (out + gloss).astype(np.float32)
 
 
-def _relit(places: Places, fallen: Float32[np.ndarray, "n 3"], light: Lighting) -> Float32[np.ndarray, "n 3"]:
+def _relight(places: Places, fallen: Float32[np.ndarray, "n 3"], light: Lighting) -> Float32[np.ndarray, "n 3"]:
     """The light to multiply colours with: on photographed places only how much of it is held off, and lamps' light."""
     known = np.flatnonzero(places.photographed)
     if light.relights or not len(known):
@@ -160,9 +160,9 @@ def _environment(world: World, rays: RayArray, light: Lighting) -> Float32[np.nd
     """What a mirror sees along rays: surfaces in unshadowed light, the window, or the surroundings."""
     hits = world.caster.first_hits(rays)
     seen = ambient(rays[:, 3:], light).astype(np.float32) + _window_glare(rays, light)
-    hit_rows = np.flatnonzero(hits.found)
+    hit_rows = np.flatnonzero(hits.is_hit)
     if len(hit_rows):
-        places = world.places(rays[hit_rows], hits.chosen(hit_rows))
+        places = world.places(rays[hit_rows], hits.select(hit_rows))
         seen[hit_rows] = 0.85 * places.albedo * unshadowed(places.points, places.normals, light) + places.emissive
     return seen
 
@@ -187,9 +187,9 @@ def _beyond(
     onward = np.concatenate([places.points[clear] + 2e-3 * direction, direction], axis=1).astype(np.float32)
     hits = world.caster.first_hits(onward)
     seen = np.broadcast_to(ambient(direction, light), direction.shape).astype(np.float32)
-    hit_rows = np.flatnonzero(hits.found)
+    hit_rows = np.flatnonzero(hits.is_hit)
     if len(hit_rows):
-        behind = world.places(onward[hit_rows], hits.chosen(hit_rows))
+        behind = world.places(onward[hit_rows], hits.select(hit_rows))
         fallen = unshadowed(behind.points, behind.normals, light)
         seen[hit_rows] = _radiance(world, behind, onward[hit_rows], fallen, light, depth + 1)
     return seen
@@ -226,13 +226,13 @@ def _resample(
     count = len(_SUBPIXELS)
     rays = view.rays((pixels[:, None, ::-1] + 0.5 + _SUBPIXELS).reshape(-1, 2))
     hits = world.caster.first_hits(rays)
-    hit_rows = np.flatnonzero(hits.found)
-    chosen = hits.chosen(hit_rows)
+    hit_rows = np.flatnonzero(hits.is_hit)
+    chosen = hits.select(hit_rows)
     places = world.places(rays[hit_rows], chosen, pixel_footprint(view, chosen.distance[:, None])[:, 0])
     borrowed = _borrow(places, np.repeat(pixels, count, axis=0)[hit_rows], grid, fallen)
     seen = np.zeros((len(rays), 3), np.float32)
     seen[hit_rows] = np.minimum(_radiance(world, places, rays[hit_rows], borrowed, light), BRIGHTEST)
-    share = hits.found.reshape(-1, count).mean(axis=1)
+    share = hits.is_hit.reshape(-1, count).mean(axis=1)
     return seen.reshape(-1, count, 3).mean(axis=1), share.astype(np.float32)
 
 

@@ -144,7 +144,7 @@ def _vignette(width: int, height: int) -> Float32[np.ndarray, "h w"]:
 
 
 def _resize(camera: Camera, width: int, height: int) -> Camera:
-    return Camera(camera.intrinsics.scaled(width, height), camera.T_world_camera)
+    return Camera(camera.intrinsics.resize(width, height), camera.T_world_camera)
 
 
 def _composite(shot: Shot, shadow: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 4"]:

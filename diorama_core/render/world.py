@@ -152,7 +152,7 @@ class World:
         """The instances that triangles are of."""
         return self._instance_of_face.take(triangle)
 
-    def photographed(self, triangle: Int[np.ndarray, "n"]) -> Bool[np.ndarray, "n"]:
+    def is_photo(self, triangle: Int[np.ndarray, "n"]) -> Bool[np.ndarray, "n"]:
         """Whether the colours of triangles already hold the light of the room."""
         return np.asarray(self._materials.photographed.take(self._surface_of_face.take(triangle)))
 
@@ -202,7 +202,7 @@ def place_surfaces(
     placed: list[PlacedSurface] = []
     for index, item in enumerate(scene.objects):
         if not item.hidden and item.id not in without:
-            paint = (item.colour, item.finish, item.shown_photo_materials)
+            paint = (item.colour, item.finish, item.visible_materials)
             scale = relative_scale(item.pose.scale)
             shapes = library if item.open_share == 0.0 else OpenedShapes(library, item.open_share, scale)
             surfaces = shape_surfaces(shapes, item.shape_id, *paint, textures or {}, scale)

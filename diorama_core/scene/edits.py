@@ -82,7 +82,7 @@ def resize(scene: Scene, object_id: str, size_m: Float[np.ndarray, "3"]) -> Scen
     pose = Pose(item.pose.R_world_object, item.pose.position + rise, size_m / np.asarray(item.shape_size_m))
     # What stands on it rises with the new top: a rigid move alone carries it only half of the way.
     moved = move(scene, object_id, pose)
-    return place(moved, {i: moved.object(i).pose.moved(rise) for i in descendants(scene, object_id)})
+    return place(moved, {i: moved.object(i).pose.move(rise) for i in descendants(scene, object_id)})
 
 
 def swap(scene: Scene, object_id: str, candidate: Candidate, *, keep_pose: bool = False) -> Scene:
@@ -111,7 +111,7 @@ def swap(scene: Scene, object_id: str, candidate: Candidate, *, keep_pose: bool 
         supports=tuple(replace(s, parent_surface=None) if s.parent == object_id else s for s in changed.supports),
     )
     lift = np.array([0.0, 0.0, rise])
-    return _map_objects(changed, lambda o: replace(o, pose=o.pose.moved(lift)) if o.id in followers else o)
+    return _map_objects(changed, lambda o: replace(o, pose=o.pose.move(lift)) if o.id in followers else o)
 
 
 def insert(scene: Scene, item: SceneObject, support: Support | None = None) -> Scene:
@@ -148,7 +148,7 @@ def duplicate(scene: Scene, object_id: str, *, offset_world: Vector3 = (0.3, 0.3
     item = _existing(scene, object_id)
     copy_id = fresh_id(scene, item.category)
     copy = replace(
-        item, id=copy_id, pose=item.pose.moved(offset_world), locked=False, hidden=False, mask_id=None, box_px=None
+        item, id=copy_id, pose=item.pose.move(offset_world), locked=False, hidden=False, mask_id=None, box_px=None
     )
     edge = scene.support_of(object_id)
     return insert(scene, copy, replace(edge, child=copy_id) if edge is not None else None), copy_id

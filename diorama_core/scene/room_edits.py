@@ -287,7 +287,7 @@ def _followers(scene: Scene, plane_ids: Iterable[str]) -> frozenset[str]:
 
 
 def _carry(scene: Scene, object_ids: frozenset[str], shift_world: Float[np.ndarray, "3"]) -> Scene:
-    moved = (replace(o, pose=o.pose.moved(shift_world)) if o.id in object_ids else o for o in scene.objects)
+    moved = (replace(o, pose=o.pose.move(shift_world)) if o.id in object_ids else o for o in scene.objects)
     return replace(scene, objects=tuple(moved))
 
 

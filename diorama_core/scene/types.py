@@ -77,7 +77,7 @@ class Intrinsics:
         """Full vertical field of view."""
         return float(np.arctan2(self.cy, self.fy) + np.arctan2(self.height - self.cy, self.fy))
 
-    def scaled(self, width: int, height: int) -> Intrinsics:
+    def resize(self, width: int, height: int) -> Intrinsics:
         """This camera for the picture resized to `width` x `height`."""
         sx, sy = width / self.width, height / self.height
         return Intrinsics(width, height, self.fx * sx, self.fy * sy, self.cx * sx, self.cy * sy)
@@ -181,7 +181,7 @@ class Pose(ArrayValue):
         """Shape points in the world."""
         return (np.asarray(points_object) * self.scale) @ self.R_world_object.T + self.position
 
-    def moved(self, offset_world: Vector3) -> Pose:
+    def move(self, offset_world: Vector3) -> Pose:
         """The pose shifted by a world offset."""
         return replace(self, position=self.position + np.asarray(offset_world, dtype=np.float64))
 
@@ -236,7 +236,7 @@ class Plane(ArrayValue):
             raise ValueError(f"plane {self.id} needs at least three corners")
 
     @property
-    def seen(self) -> bool:
+    def is_seen(self) -> bool:
         """Whether the plane was observed rather than assumed: assumed ones give way to objects."""
         return self.confidence >= SEEN_CONFIDENCE
 
@@ -345,7 +345,7 @@ class SceneObject:
     """How sure the build was of it; None for what no build found."""
 
     @property
-    def shown_photo_materials(self) -> tuple[PhotoMaterial, ...]:
+    def visible_materials(self) -> tuple[PhotoMaterial, ...]:
         """The materials from the photo that the object shows."""
         return self.photo_materials if self.material_source == "photo" else ()
 

@@ -1,7 +1,7 @@
 """Rendered rooms with a known truth.
 
 ```
-scene = furnished_room(seed, "living")                # truth in the room frame, no camera
+scene = furnish_room(seed, "living")                 # truth in the room frame, no camera
 camera, *others = sample_cameras(scene, library, seed)  # cameras as people hold them
 view = render_truth(scene, camera, library)           # picture, depth, ids, truth in the photo's world
 built = build_scene(view.inputs, library)

@@ -25,7 +25,7 @@ def photo_only(view: TruthView) -> Inputs:
 def true_objects(view: TruthView) -> tuple[DetectedObject, ...]:
     """Every object asked for, with its visible mask; the id is the truth's."""
     detected = []
-    for index in view.asked:
+    for index in view.indices:
         item = view.scene.objects[index]
         mask = view.object_ids == index
         assert item.box_px is not None
@@ -36,7 +36,7 @@ def true_objects(view: TruthView) -> tuple[DetectedObject, ...]:
 
 def true_supports(view: TruthView) -> tuple[Support, ...]:
     """The support graph among the objects asked for; what an absent object holds up stands on its supporter."""
-    ids = {view.scene.objects[k].id for k in view.asked}
+    ids = {view.scene.objects[k].id for k in view.indices}
     parent_of = {s.child: s.parent for s in view.scene.supports}
     edges = []
     for edge in view.scene.supports:
@@ -52,7 +52,7 @@ def true_supports(view: TruthView) -> tuple[Support, ...]:
 def true_geometry(view: TruthView) -> ObjectGeometry:
     """Metric camera, a cuboid for every object asked for, and the support graph with plane ids."""
     cuboids = []
-    for index in view.asked:
+    for index in view.indices:
         o = view.scene.objects[index]
         cuboids.append(Cuboid(o.id, o.pose.R_world_object, o.pose.position, o.size_m, 1.0, front_known=True))
     return ObjectGeometry(view.camera, tuple(cuboids), true_supports(view), ScaleSource.GIVEN)
@@ -67,7 +67,7 @@ class TrueShapes:
     @classmethod
     def of(cls, view: TruthView) -> TrueShapes:
         """The shapes of the objects asked for, known by the ids that the object stages give (mask ids)."""
-        return cls(tuple((str(view.scene.objects[k].mask_id), view.scene.objects[k].shape_id) for k in view.asked))
+        return cls(tuple((str(view.scene.objects[k].mask_id), view.scene.objects[k].shape_id) for k in view.indices))
 
     def retrieve(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress

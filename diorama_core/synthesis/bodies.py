@@ -54,7 +54,7 @@ class PlacedBodies:
             item: its shape.
             pose: where it is.
         """
-        self._placed[object_id] = self._posed(item, pose, np.zeros(3))
+        self._placed[object_id] = self._pose(item, pose, np.zeros(3))
 
     def remove(self, object_id: str) -> None:
         """Take a body away again."""
@@ -71,7 +71,7 @@ class PlacedBodies:
             ignore: ids that do not count.
             lift: shift before it is tried, metres.
         """
-        body = self._posed(item, pose, np.asarray(lift, dtype=np.float64))
+        body = self._pose(item, pose, np.asarray(lift, dtype=np.float64))
         request, result = fcl.CollisionRequest(), fcl.CollisionResult()
         for name, other in self._placed.items():
             if name in ignore or (body.low > other.high).any() or (other.low > body.high).any():
@@ -80,7 +80,7 @@ class PlacedBodies:
                 return name
         return None
 
-    def _posed(self, item: Item, pose: Pose, lift: np.ndarray) -> _Posed:
+    def _pose(self, item: Item, pose: Pose, lift: np.ndarray) -> _Posed:
         return _Posed(self.library, item, pose.R_world_object, pose.position + lift)
 
 

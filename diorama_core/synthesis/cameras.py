@@ -158,7 +158,7 @@ class _Viewpoint:
 
 def _compare(scene: Scene, caster: MeshCaster, camera: Camera) -> _Viewpoint:
     """How much a view shows: objects well inside the picture, not too near, with floor to stand on."""
-    probe = Camera(camera.intrinsics.scaled(*PROBE_SIZE), camera.T_world_camera)
+    probe = Camera(camera.intrinsics.resize(*PROBE_SIZE), camera.T_world_camera)
     seen = caster.buffers(probe)
     count = len(scene.objects)
     pixels = np.bincount(seen.instance[seen.instance >= 0].ravel(), minlength=count)[:count]

@@ -66,9 +66,9 @@ class Furnisher:
     def pick(self, *categories: str, where: Callable[[Shape], bool] | None = None) -> Item | None:
         """A random shape of the categories, a little larger or smaller than made; None when there is none."""
         options = [s for c in categories for s in self.library.in_category(c) if where is None or where(s)]
-        return self.sized(options[int(self.rng.integers(len(options)))]) if options else None
+        return self.scale(options[int(self.rng.integers(len(options)))]) if options else None
 
-    def sized(self, shape: Shape) -> Item:
+    def scale(self, shape: Shape) -> Item:
         """A shape at a random size near its own."""
         log = self.rng.normal(0.0, self.spread.common) + self.rng.normal(0.0, self.spread.per_axis, 3)
         if shape.symmetry >= 3:
@@ -139,7 +139,7 @@ class Furnisher:
         if not self._floor_free(item, quad, beside, in_zone=in_zone):
             return None
         front = self._front(item, xy, yaw_rad, free_front_m)
-        if free_front_m and (not self.plan.contains(front, 1e-3) or self._blocked(front, beside)):
+        if free_front_m and (not self.plan.contains(front, 1e-3) or self._is_blocked(front, beside)):
             return None
         parent, base = self._ground(quad)
         pose = self._upright(item, xy, base, yaw_rad)
@@ -334,7 +334,7 @@ class Furnisher:
         ahead = np.array([np.cos(yaw_rad), np.sin(yaw_rad)]) * (item.size_m[0] + free_m) / 2
         return footprint(np.array([max(free_m, 1e-3), item.size_m[1] * 0.9, 0.0]), xy + ahead, yaw_rad)
 
-    def _blocked(self, quad: Float[np.ndarray, "4 2"], beside: Collection[str] = ()) -> bool:
+    def _is_blocked(self, quad: Float[np.ndarray, "4 2"], beside: Collection[str] = ()) -> bool:
         return any(quads_overlap(quad, other) for name, other in self._standing.items() if name not in beside)
 
     def _floor_free(
@@ -346,7 +346,7 @@ class Furnisher:
             return True
         if not in_zone and any(item.size_m[2] > z.above_m and quads_overlap(quad, z.quad) for z in self._zones):
             return False
-        return not self._blocked(quad, beside)
+        return not self._is_blocked(quad, beside)
 
     def _ground(self, quad: Float[np.ndarray, "4 2"]) -> tuple[str, float]:
         """What carries a footprint: a rug that holds all of it, or the floor; and its height."""

@@ -19,7 +19,7 @@ def add_door(f: Furnisher, wall: WallLine | None = None) -> str | None:
     item = f.pick("door")
     if item is None:
         return None
-    item = _sunk(item)
+    item = _sink(item)
     for candidate in [wall] if wall else _shuffle(f):
         if candidate.length_m < item.size_m[1] + 0.3:
             continue
@@ -46,7 +46,7 @@ def add_window(f: Furnisher, wall: WallLine, t_m: float | None = None, *, dresse
     item = f.pick("window", where=lambda s: s.size_m[1] < wall.length_m - 0.5)
     if item is None:
         return None
-    item = _sunk(item)
+    item = _sink(item)
     t = float(f.rng.uniform(0.35, 0.65) * wall.length_m) if t_m is None else t_m
     top = min(2.2, f.plan.height_m - 0.2)
     placed = f.hang(item, wall, t, top - item.size_m[2] / 2)
@@ -76,7 +76,7 @@ def _dress(f: Furnisher, wall: WallLine, t: float, window: Item) -> None:
         f.hang(narrowed, wall, t + side * offset, max(centre, narrowed.size_m[2] / 2 + 0.01))
 
 
-def _sunk(item: Item) -> Item:
+def _sink(item: Item) -> Item:
     depth = item.shape.size_m[0]
     return Item(item.shape, (min(1.0, STANDS_OUT_M / depth), item.scale[1], item.scale[2]))
 

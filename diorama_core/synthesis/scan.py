@@ -80,7 +80,7 @@ def scan(
         for turn in range(turns):
             yaw = 2 * np.pi * (turn + place / places) / turns
             camera = Camera(k, level_pose(stand.position, yaw, PITCHES_RAD[turn % len(PITCHES_RAD)]))
-            depth = _depth(solid, Camera(k.scaled(*DEPTH_SIZE), camera.T_world_camera))
+            depth = _depth(solid, Camera(k.resize(*DEPTH_SIZE), camera.T_world_camera))
             depth = np.where(depth > 0, depth + rng.normal(0.0, NOISE_M, depth.shape), 0.0)
             unsure = rng.random(depth.shape) < UNSURE_SHARE
             depth = np.where(unsure, depth * rng.uniform(0.5, 0.95, depth.shape), depth).astype(np.float32)

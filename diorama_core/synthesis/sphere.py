@@ -38,7 +38,7 @@ class SphereTruth:
     """Index into the room's objects; -1 on the room itself."""
     T_world_sphere: Float[np.ndarray, "4 4"]
 
-    def marked(self, objects: Sequence[SceneObject]) -> dict[int, LabelledBox]:
+    def boxes(self, objects: Sequence[SceneObject]) -> dict[int, LabelledBox]:
         """Boxes of the objects that a person would mark, by index; across the seam they reach beyond the right side.
 
         Args:

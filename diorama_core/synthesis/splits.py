@@ -43,21 +43,21 @@ class Subset:
 
     def shape(self, shape_id: str) -> Shape:
         """One record with its support surfaces."""
-        return self.library.shape(self._known(shape_id))
+        return self.library.shape(self._check(shape_id))
 
     def mesh(self, shape_id: str) -> trimesh.Trimesh:
         """Geometry only."""
-        return self.library.mesh(self._known(shape_id))
+        return self.library.mesh(self._check(shape_id))
 
     def parts(self, shape_id: str) -> trimesh.Scene:
         """Geometry with materials."""
-        return self.library.parts(self._known(shape_id))
+        return self.library.parts(self._check(shape_id))
 
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB."""
-        return self.library.glb(self._known(shape_id))
+        return self.library.glb(self._check(shape_id))
 
-    def _known(self, shape_id: str) -> str:
+    def _check(self, shape_id: str) -> str:
         if base_id(shape_id) not in self.ids:
             raise LibraryError(f"shape '{shape_id}' is not in the subset {self.name or 'of the library'}")
         return shape_id

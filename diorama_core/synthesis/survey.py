@@ -91,7 +91,7 @@ def survey_view(name: str, view: TruthView) -> ViewSurvey:
     walls = [(view.room_plane_ids == k).mean() for k, role in enumerate(roles) if role == "wall"]
     return ViewSurvey(
         name,
-        len(view.asked),
+        len(view.indices),
         float((floors | np.isin(ids, rugs)).mean()),
         float(pixels.max() / ids.size),
         float((view.inputs.depth_m < NEAR_M).mean()),

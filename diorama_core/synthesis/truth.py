@@ -76,7 +76,7 @@ class TruthView(ArrayValue):
         return self.scene.camera
 
     @cached_property
-    def asked(self) -> tuple[int, ...]:
+    def indices(self) -> tuple[int, ...]:
         """Indices of the objects that are in `inputs.instances`."""
         return tuple(k for k, o in enumerate(self.scene.objects) if o.mask_id is not None)
 
@@ -134,7 +134,7 @@ class Studio:
             with_empty_room: Whether it is rendered without objects, too.
             sensor: Whether depth is as a sensor has it.
         """
-        camera = Camera(camera.intrinsics.scaled(*size), camera.T_world_camera)
+        camera = Camera(camera.intrinsics.resize(*size), camera.T_world_camera)
         shot = self._shot(camera)
         room = self._room.buffers(camera)
         scene = to_photo_world(replace(self.scene, camera=camera))
@@ -168,7 +168,7 @@ class Studio:
         self, camera: Camera, size: tuple[int, int]
     ) -> tuple[UInt8[np.ndarray, "h w 3"], Int32[np.ndarray, "h w"]]:
         """One picture, and for every pixel the index of the object it shows (-1 for the room itself)."""
-        shot = self._shot(Camera(camera.intrinsics.scaled(*size), camera.T_world_camera))
+        shot = self._shot(Camera(camera.intrinsics.resize(*size), camera.T_world_camera))
         instance = shot.grid.instance
         return _develop(shot), np.where(instance < len(self.scene.objects), instance, -1).astype(np.int32)
 
@@ -235,7 +235,7 @@ def _visible_fractions(
             x, y = (np.arange(box[a] // STEP * STEP + STEP / 2, box[a + 2] + STEP, STEP) for a in (0, 1))
             inside = np.stack(np.meshgrid(x[x < view.width], y[y < view.height]), axis=-1)
             hits = MeshCaster([(library.mesh(item.shape_id), item.pose.matrix)]).first_hits(view.rays(inside))
-            whole = int(hits.found.sum()) * STEP**2
+            whole = int(hits.is_hit.sum()) * STEP**2
             share[index] = min(1.0, pixels[index] / max(whole, pixels[index] * 1e-3, 1.0))
     return share
 

@@ -90,21 +90,21 @@ class VariantMaker:
             UnavailableError: MuJoCo is not installed.
         """
         rng, scene = np.random.default_rng(seed), self.room
-        steps = {"shapes": self._reshaped, "poses": self._moved, "clutter": self._cluttered, "textures": self._painted}
+        steps = {"shapes": self._reshape, "poses": self._move, "clutter": self._clutter, "textures": self._paint}
         for aspect, step in steps.items():
             if aspect in self.aspects:
                 scene = step(rng, scene)
         if "light" in self.aspects:
-            scene = lit_anew(rng, scene)
+            scene = relight(rng, scene)
         for _ in range(self.settings.tries):
             report = stability_report(scene, self.library)
             if not report.unstable:
                 moved = max((d.moved_m for d in report.drifts), default=0.0)
                 return Variant(seed, scene, differences(self.room, scene), moved)
-            scene = self._calmed(scene, {d.object_id for d in report.unstable})
+            scene = self._calm(scene, {d.object_id for d in report.unstable})
         return None
 
-    def _calmed(self, scene: Scene, restless: Collection[str]) -> Scene:
+    def _calm(self, scene: Scene, restless: Collection[str]) -> Scene:
         """What moves, and all that shares its furniture, as it is in the room, but for colours; additions are gone."""
         tops = {next((a for a in reversed(ancestors(scene, i)) if scene.has_object(a)), i) for i in restless}
         chosen = {i for top in tops for i in (top, *descendants(scene, top))}
@@ -126,7 +126,7 @@ class VariantMaker:
         share = self.settings.changed_share
         return [o for o in scene.objects if not o.locked and not o.hidden and rng.random() < share]
 
-    def _reshaped(self, rng: np.random.Generator, scene: Scene) -> Scene:
+    def _reshape(self, rng: np.random.Generator, scene: Scene) -> Scene:
         """Other shapes of the same kind in the same size; what stands on them is seated anew."""
         for item in self._some(rng, scene):
             options = [s for s in self.library.in_category(item.category) if self._alike(s, item)]
@@ -148,7 +148,7 @@ class VariantMaker:
         stretch = np.abs(np.log(np.asarray(item.size_m) / np.asarray(shape.size_m)))
         return shape.id != item.shape_id and bool((stretch < np.log(self.settings.stretch)).all())
 
-    def _moved(self, rng: np.random.Generator, scene: Scene) -> Scene:
+    def _move(self, rng: np.random.Generator, scene: Scene) -> Scene:
         """What stands free a little elsewhere with its load, clear of others and inside the room."""
         frame = RoomFrame.of(scene)
         for item in self._some(rng, scene):
@@ -161,7 +161,7 @@ class VariantMaker:
             for _ in range(self.settings.tries):
                 shift = rng.normal(0.0, self.settings.shift_m / (1 if on_floor else 3), 2)
                 R = rotation_from_vector(np.array([0.0, 0.0, rng.normal(0.0, self.settings.turn_rad)]))
-                pose = item.pose.moved(np.array([*shift, 0.0]))
+                pose = item.pose.move(np.array([*shift, 0.0]))
                 trial = edits.move(scene, item.id, replace(pose, R_world_object=R @ pose.R_world_object))
                 if not on_floor:
                     trial = seat(trial, self.library, item.id)
@@ -171,7 +171,7 @@ class VariantMaker:
                     break
         return scene
 
-    def _cluttered(self, rng: np.random.Generator, scene: Scene) -> Scene:
+    def _clutter(self, rng: np.random.Generator, scene: Scene) -> Scene:
         """Some small things are gone, others stand where people leave them."""
         portable = having("portable")
         bare = [o for o in scene.objects if o.category in portable and not scene.children_of(o.id) and not o.locked]
@@ -199,7 +199,7 @@ class VariantMaker:
                     break
         return scene
 
-    def _painted(self, rng: np.random.Generator, scene: Scene) -> Scene:
+    def _paint(self, rng: np.random.Generator, scene: Scene) -> Scene:
         """Other colours of furniture, another floor, and walls that are all alike."""
         for item in self._some(rng, scene):
             if item.category not in having("own_colours"):
@@ -214,7 +214,7 @@ class VariantMaker:
         return scene
 
 
-def lit_anew(rng: np.random.Generator, scene: Scene) -> Scene:
+def relight(rng: np.random.Generator, scene: Scene) -> Scene:
     """Another time of day, the sun from about the side of the window, some of the lamps on."""
     lamps = [o.id for o in scene.objects if o.category in column("lumens") and rng.random() < 0.5]
     settings = first_daylight(scene)

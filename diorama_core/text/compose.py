@@ -91,7 +91,7 @@ def compose_room(
     for attempt in range(TRIES):
         progress.report(attempt / TRIES, "Composing a room from the library")
         composer = _Composer(request, library, np.random.default_rng((digest, attempt)), attempt)
-        made = composer.composed()
+        made = composer.compose()
         if best is None or made[0] < best[0]:
             best = made
         if not best[1].notes:
@@ -113,7 +113,7 @@ class _Composer:
         self.in_rows: dict[int, PlacedRows] = {}
         self.not_in_rows: list[int] = []
 
-    def composed(self) -> tuple[float, Composed]:
+    def compose(self) -> tuple[float, Composed]:
         """The room, and how much it lacks."""
         wanted, added = with_essentials(self.request)
         shapes = {k: shapes_for(self.library, self.rng, o, wanted) for k, o in enumerate(wanted)}
@@ -125,7 +125,7 @@ class _Composer:
             self._place(k, wanted[k], shapes[k], wanted)
         self._resolve_late(wanted)
         for _ in range(REPAIRS):
-            if not self._repaired():
+            if not self._repair():
                 break
         self._decorate(wanted)
         check_scene(self.scene)
@@ -152,7 +152,7 @@ class _Composer:
         chosen: Shape | None = None
         for copy in range(request.count):
             object_id = edits.fresh_id(self.scene, request.category)
-            relations = self._resolved(k, request, copy, object_id)
+            relations = self._resolve(k, request, copy, object_id)
             usual = usual_relations(self.scene, request, copy)
             usual += self._face_to_face(request, copy, placed, object_id)
             usual = place_seat(self.scene, usual, request, copy) + self._side_relations(request, wanted)
@@ -188,7 +188,7 @@ class _Composer:
             item = self.scene.object(object_id)
             self.scene = dress(self.scene, object_id, self.library.shape(item.shape_id), request.appearance)
 
-    def _resolved(self, k: int, request: RequestedObject, copy: int, object_id: str) -> list[tuple[Wish, Relation]]:
+    def _resolve(self, k: int, request: RequestedObject, copy: int, object_id: str) -> list[tuple[Wish, Relation]]:
         """The wishes of one copy with ids in the place of categories."""
         resolved: list[tuple[Wish, Relation]] = []
         for wish in request.wishes:
@@ -208,7 +208,7 @@ class _Composer:
         for k, request in enumerate(wanted):
             for copy, object_id in enumerate(self.ids.get(k, ())):
                 if any(relation.targets == ("?",) for _, relation in self.wishes.get(object_id, ())):
-                    self.wishes[object_id] = self._resolved(k, request, copy, object_id)
+                    self.wishes[object_id] = self._resolve(k, request, copy, object_id)
                     self.relations[object_id] = [r for _, r in self.wishes[object_id]]
 
     def _face_to_face(
@@ -243,7 +243,7 @@ class _Composer:
             if not is_met(self.scene, i, relation, frame)
         ]
 
-    def _repaired(self) -> bool:
+    def _repair(self) -> bool:
         """Place objects with unmet wishes anew, and what they refer to; whether more wishes are met."""
         unmet = self._unmet()
         if not unmet:

@@ -47,7 +47,7 @@ from diorama_core.text.edit_plan import (
     Turn,
     names_of,
 )
-from diorama_core.text.edit_room import cover, direction_of, lengthen, lit, open_wall, wall_on
+from diorama_core.text.edit_room import cover, direction_of, lengthen, light, open_wall, wall_on
 from diorama_core.text.edit_states import (
     copy,
     exchange,
@@ -113,7 +113,7 @@ class EditApplier:
             return cover(scene, edit)
         if isinstance(edit, RoomLength):
             return lengthen(scene, edit)
-        return lit(scene, edit) if isinstance(edit, Light) else open_wall(self.positioner.library, scene, edit)
+        return light(scene, edit) if isinstance(edit, Light) else open_wall(self.positioner.library, scene, edit)
 
     def _object(
         self,

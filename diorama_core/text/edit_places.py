@@ -124,15 +124,15 @@ def _shift_by(scene: Scene, ids: Sequence[str], edit: Shift, toward: str, share:
             shift_m = shift_m + share * edit.off_wall_m * off_wall(after, object_id)
         under_ceiling = edge is not None and any(p.id == edge.parent for p in scene.architecture.by_role("ceiling"))
         after = edits.move(
-            after, object_id, item.pose.moved((shift_m[0], shift_m[1], 0.0 if under_ceiling else edit.up_m))
+            after, object_id, item.pose.move((shift_m[0], shift_m[1], 0.0 if under_ceiling else edit.up_m))
         )
         if edit.up_m and under_ceiling:
-            after, note = _hung_longer(after, object_id, -edit.up_m)
+            after, note = _hang_lower(after, object_id, -edit.up_m)
             notes += note
     return after, notes
 
 
-def _hung_longer(scene: Scene, object_id: str, by_m: float) -> tuple[Scene, list[str]]:
+def _hang_lower(scene: Scene, object_id: str, by_m: float) -> tuple[Scene, list[str]]:
     """What hangs from the ceiling reaches lower or less low; it stays fixed to the ceiling."""
     item = scene.object(object_id)
     height = float(item.size_m[2]) + by_m
@@ -140,7 +140,7 @@ def _hung_longer(scene: Scene, object_id: str, by_m: float) -> tuple[Scene, list
         raise EditRefused(f"{item.label} is {float(item.size_m[2]):.2f} m tall and hangs at the ceiling already")
     after = edits.resize(scene, object_id, np.array([*item.size_m[:2], height]))
     grown = after.object(object_id).pose  # on its foot; its top is to stay where it was
-    after = edits.move(after, object_id, grown.moved((0.0, 0.0, -by_m)))
+    after = edits.move(after, object_id, grown.move((0.0, 0.0, -by_m)))
     return after, [f"{item.label} is {height:.2f} m tall now; it hangs at the ceiling as before"]
 
 
@@ -242,7 +242,7 @@ def lift_onto(scene: Scene, rug_id: str) -> Scene:
             continue
         if bool(lie_within(footprint_of(item)[None], quad)[0]):
             rise = top - float(item.corners_world[:, 2].min())
-            scene = edits.move(scene, item.id, item.pose.moved((0.0, 0.0, rise)))
+            scene = edits.move(scene, item.id, item.pose.move((0.0, 0.0, rise)))
             scene = edits.attach(scene, Support(item.id, rug_id))
     return scene
 

@@ -130,7 +130,7 @@ def lengthen(scene: Scene, edit: RoomLength) -> Done:
     return Done(after, (f"make the room {extents[k] + by:.2f} m {'long' if edit.side == 'length' else 'wide'}",))
 
 
-def lit(scene: Scene, edit: Light) -> Done:
+def light(scene: Scene, edit: Light) -> Done:
     """Another time of day, more or less exposure, all lamps on or off."""
     settings, lines = scene.light_settings, []
     if edit.hour is not None:

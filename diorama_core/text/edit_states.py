@@ -278,7 +278,7 @@ def line_up(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Alig
         after = scene
         for object_id in ids:
             pose = scene.object(object_id).pose
-            after = edits.move(after, object_id, pose.moved((0.0, 0.0, level - float(pose.position[2]))))
+            after = edits.move(after, object_id, pose.move((0.0, 0.0, level - float(pose.position[2]))))
         return Done(after, (f"hang {names_of(scene, ids)} at one height",), tuple(ids))
     across = np.cross(UPRIGHT, axis)
     after, notes = align(scene, ids, across, "middle"), list[str]()

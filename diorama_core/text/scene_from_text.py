@@ -231,7 +231,7 @@ def _stands_free(scene: Scene, eye: Float[np.ndarray, "3"], clearance_m: float) 
 
 
 def _probe(camera: Camera) -> Camera:
-    return Camera(camera.intrinsics.scaled(*PROBE_PX), camera.T_world_camera)
+    return Camera(camera.intrinsics.resize(*PROBE_PX), camera.T_world_camera)
 
 
 def _score(caster: MeshCaster, camera: Camera, worth: Float[np.ndarray, " n"]) -> float:

@@ -58,14 +58,14 @@ class Selector:
                 f"nothing in a room is called “{unknown or words.strip()}”; this scene has: {self.inventory()}"
             )
         if phrase.pronoun:
-            return self._meant(words)
+            return self._referents(words)
         exact = [o.id for o in self.scene.objects if o.label.lower() == _plain(words)]
         if len(exact) == 1:
             return (exact[0],)
         if phrase.beyond and not any(set(phrase.beyond) <= set(o.label.lower().split()) for o in self.scene.objects):
             raise EditRefused(f"“{words.strip()}”: “{' '.join(phrase.beyond)}” is not understood")
-        objects = self._named(phrase, words)
-        objects = self._filtered(objects, places, words)
+        objects = self._matches(phrase, words)
+        objects = self._filter(objects, places, words)
         if movable and not phrase.label:  # "everything" that is moved is what stands on the floor, with what it carries
             objects = [o for o in objects if self._stands_free(o)] or objects
         elif movable and not phrase.every:
@@ -75,7 +75,7 @@ class Selector:
             if number > len(objects):
                 raise EditRefused(f"there are only {len(objects)} of these: {_names(objects)}")
             return (objects[number - 1 if number else -1].id,)
-        return self._counted(objects, phrase, words)
+        return self._select(objects, phrase, words)
 
     def targets(self, words: str) -> tuple[str, ...]:
         """Ids of what a phrase of place refers to; one object, or two joined by "and"."""
@@ -90,13 +90,13 @@ class Selector:
         listed = [name if n == 1 else f"{name} ({n})" for name, n in counts.most_common(LISTED)]
         return ", ".join(listed) + (", ..." if len(counts) > LISTED else "") if listed else "nothing yet"
 
-    def _meant(self, words: str) -> tuple[str, ...]:
+    def _referents(self, words: str) -> tuple[str, ...]:
         known = tuple(i for i in (self.last or self.selected) if self.scene.has_object(i))
         if not known:
             raise EditRefused(f"“{words.strip()}” is not clear here; name the object")
         return known
 
-    def _named(self, phrase: NounPhrase, words: str) -> list[SceneObject]:
+    def _matches(self, phrase: NounPhrase, words: str) -> list[SceneObject]:
         if not phrase.label:
             inside = [o for o in self.scene.objects if o.category not in OPENING_CATEGORIES]
             furniture = [o for o in inside if "furniture" not in words or is_furniture(o.category)]
@@ -140,7 +140,7 @@ class Selector:
                 raise EditRefused(f"no {kind} here is {word}; there are {len(objects)}: {_names(objects)}")
         return objects
 
-    def _filtered(self, objects: list[SceneObject], places: Sequence[PlacePhrase], words: str) -> list[SceneObject]:
+    def _filter(self, objects: list[SceneObject], places: Sequence[PlacePhrase], words: str) -> list[SceneObject]:
         for place in places:
             targets = self.targets(place.words) if place.words else ()
             if place.kind == "on" and targets:
@@ -156,7 +156,7 @@ class Selector:
             objects = here
         return objects
 
-    def _counted(self, objects: list[SceneObject], phrase: NounPhrase, words: str) -> tuple[str, ...]:
+    def _select(self, objects: list[SceneObject], phrase: NounPhrase, words: str) -> tuple[str, ...]:
         ids = tuple(o.id for o in objects)
         if phrase.every or not phrase.label or len(ids) == 1:
             return ids

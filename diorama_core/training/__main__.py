@@ -231,7 +231,7 @@ def _facings(a: argparse.Namespace) -> None:
     certified = certificate(model, f"python -m diorama_core.training facings {given}", a.folds)
     write_atomically(a.output, json.dumps(certified, indent=1).encode())
     for k in range(a.folds if a.settings else 0):
-        weights = as_settings(model.fitted(beginning(), ~model.fold(k, a.folds)))
+        weights = as_settings(model.fit(beginning(), ~model.fold(k, a.folds)))
         settings = {f"pose.stage.facing.{name}": weight for name, weight in weights.items()}
         write_atomically(a.settings / f"fold{k}.json", json.dumps(settings, indent=1).encode())
     print(f"weights written: {a.output}")

@@ -29,12 +29,12 @@ def training_picture(
         rng: the source of chance.
     """
     if len(pictures) == 1:
-        return _relit(_crop(pictures[0], size, rng), rng)
+        return _relight(_crop(pictures[0], size, rng), rng)
     half = (size[0] // 2, size[1] // 2)
     canvas = np.zeros((size[1], size[0], 3), np.uint8)
     boxes, categories, pixels, forms = [], [], [], []
     for k, picture in enumerate(pictures):
-        part = _relit(_crop(picture, half, rng), rng)
+        part = _relight(_crop(picture, half, rng), rng)
         x, y = (k % 2) * half[0], (k // 2) * half[1]
         canvas[y : y + half[1], x : x + half[0]] = part.rgb
         boxes.append(part.boxes + np.array([x, y, x, y], np.float32))
@@ -71,7 +71,7 @@ def _crop(picture: LabelledPicture, size: tuple[int, int], rng: np.random.Genera
     return LabelledPicture(rgb, inside[keep].astype(np.float32), *left_in)
 
 
-def _relit(picture: LabelledPicture, rng: np.random.Generator) -> LabelledPicture:
+def _relight(picture: LabelledPicture, rng: np.random.Generator) -> LabelledPicture:
     return replace(picture, rgb=photograph(picture.rgb, rng))
 
 

@@ -147,7 +147,7 @@ class FacingModel:
             incoming = torch.zeros_like(unary).index_add(0, self.first, messages)
         return torch.log_softmax((unary + incoming)[self.objects], dim=1)
 
-    def fitted(self, start: Tensor, seen: Bool[np.ndarray, "n"]) -> Tensor:
+    def fit(self, start: Tensor, seen: Bool[np.ndarray, "n"]) -> Tensor:
         """Weights for the asked objects that are seen; those that begin at 0, and those of `AS_TOLD`, stay."""
         begin = torch.log(start.clamp_min(1e-6))
         logs, free = begin.clone().requires_grad_(True), (start > 0) & (torch.tensor([n not in AS_TOLD for n in NAMES]))
@@ -180,7 +180,7 @@ class FacingModel:
         is_right = np.zeros(len(self.photos), bool)
         for k in range(folds):
             test = self.fold(k, folds)
-            is_right[test] = self.is_right(self.fitted(start, ~test))[test]
+            is_right[test] = self.is_right(self.fit(start, ~test))[test]
         return is_right
 
 
@@ -197,7 +197,7 @@ def as_settings(weights: Tensor) -> dict[str, float]:
 def certificate(model: FacingModel, command: str, folds: int) -> dict[str, object]:
     """Weights fitted to all photos, and what they and every term are worth on photos not seen."""
     begin = beginning()
-    weights = model.fitted(begin, np.ones(len(model.photos), bool))
+    weights = model.fit(begin, np.ones(len(model.photos), bool))
     whole = model.cross_validated(begin, folds)
     without = {}
     for k, name in enumerate(NAMES):

@@ -148,7 +148,7 @@ def crop_before(
     mirrored = rng.random() < 0.5
     rgba = rgba[:, ::-1] if mirrored else rgba
     canvas = _part(background, rng)
-    cut = _Cut.drawn(rng) if rng.random() < CUT else None
+    cut = _Cut.draw(rng) if rng.random() < CUT else None
     if cut is not None:
         rgba = cut.apply(rgba)
         height, width = rgba.shape[:2]
@@ -172,7 +172,7 @@ class _Cut:
     share: float
 
     @classmethod
-    def drawn(cls, rng: np.random.Generator) -> _Cut:
+    def draw(cls, rng: np.random.Generator) -> _Cut:
         return cls(int(rng.integers(3)), float(rng.uniform(0.05, MAX_CUT)))
 
     def apply(self, rgba: UInt8[np.ndarray, "h w 4"]) -> UInt8[np.ndarray, "h2 w2 4"]:

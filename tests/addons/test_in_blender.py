@@ -139,7 +139,7 @@ def test_what_was_done_is_one_step_that_the_editor_takes_back(
     person = session.ui_thread.ask(lambda: join(session))
     session.ui_thread.ask(lambda: session.undo(person))
     assert session.scene == opened
-    session.ui_thread.ask(lambda: session.left(person.viser_client))
+    session.ui_thread.ask(lambda: session.leave(person.viser_client))
 
 
 def test_a_change_by_others_is_taken_over_and_one_s_own_stays(

@@ -58,5 +58,5 @@ class LocalClient(viser.ClientHandle):
 
 def join(session: EditorSession, client_id: int = 0) -> Client:
     """A browser connects to the session."""
-    session.joined(LocalClient(session.server, client_id))
+    session.join(LocalClient(session.server, client_id))
     return session.clients[client_id]

@@ -36,7 +36,7 @@ def enter(editor: Editor) -> tuple:
     viser_client = LocalClient(editor.server, 0)
     page = Page(editor.server.gui, None)
     viser_client.gui = page
-    editor.session.ui_thread.post(lambda: editor.session.joined(viser_client))
+    editor.session.ui_thread.post(lambda: editor.session.join(viser_client))
     assert editor.session.ui_thread.wait(60.0)
     page.client = editor.session.clients[0]
     return page.client, page
@@ -78,11 +78,11 @@ def test_commands_are_run_for_whoever_asked(editor: Editor, tmp_path: Path) -> N
     editor.open_first(make_project(tmp_path / "projects" / "demo"))
     client, _ = enter(editor)
     client.select(["chair_1"])
-    editor._asked(editor.commands["delete"], 5)
-    editor._asked(editor.commands["delete"], None)
+    editor._ask(editor.commands["delete"], 5)
+    editor._ask(editor.commands["delete"], None)
     assert editor.session.ui_thread.wait(60.0)
     assert editor.session.scene.has_object("chair_1")
-    editor._asked(editor.commands["delete"], 0)
+    editor._ask(editor.commands["delete"], 0)
     assert editor.session.ui_thread.wait(60.0)
     assert not editor.session.scene.has_object("chair_1")
 

@@ -36,9 +36,9 @@ def test_projects_are_renamed_copied_binned_and_brought_back(tmp_path: Path) -> 
     assert set(project_care.recent_projects(tmp_path)) == {project.folder, copy.folder}
     place = project_care.to_bin(copy.folder, tmp_path)
     assert copy.folder not in project_care.recent_projects(tmp_path)
-    assert project_care.binned_projects(tmp_path) == (place,)
+    assert project_care.projects_in_bin(tmp_path) == (place,)
     assert project_care.out_of_bin(place, tmp_path) == copy.folder
-    assert project_care.binned_projects(tmp_path) == ()
+    assert project_care.projects_in_bin(tmp_path) == ()
     place = project_care.to_bin(copy.folder, tmp_path)
     make_project(copy.folder)
     with pytest.raises(ProjectError, match="exists again"):
@@ -62,11 +62,11 @@ def test_clicks_add_to_an_outline_and_take_away_from_it() -> None:
     blue = np.zeros((120, 160), dtype=bool)
     blue[40:90, 30:70] = True
     outline = MaskDraft(rgb, (28.0, 38.0, 132.0, 92.0), blue)
-    both = outline.clicked(110.0, 65.0, part=True)
+    both = outline.click(110.0, 65.0, part=True)
     assert both.mask[65, 110]
     assert both.mask[65, 50]
     assert both.mask[45:85, 95:125].mean() > 0.9
-    less = both.clicked(110.0, 65.0, part=False)
+    less = both.click(110.0, 65.0, part=False)
     assert not less.mask[65, 110]
     x1, y1, x2, y2 = outline.bounds
     assert (x1, y1, x2, y2) == (30.0, 40.0, 70.0, 90.0)
@@ -93,10 +93,10 @@ def test_a_library_that_cannot_grow_says_so() -> None:
 def test_arrangements_leave_what_is_locked() -> None:
     scene = edits.set_locked(furnished_scene(), "chair_1", True)
     assert Arrangements(scene).count == 3
-    other = Arrangements(scene).taken(1)
+    other = Arrangements(scene).take(1)
     assert other.object("chair_1") == scene.object("chair_1")
     assert other.object("chair_2").shape_id != scene.object("chair_2").shape_id
-    assert Arrangements(other).taken(0).object("chair_2").shape_id == scene.object("chair_2").shape_id
+    assert Arrangements(other).take(0).object("chair_2").shape_id == scene.object("chair_2").shape_id
     assert Arrangements(Scene()).count == 0
 
 
@@ -108,10 +108,10 @@ def test_in_another_arrangement_sets_stay_sets() -> None:
         scene, objects=tuple(replace(o, candidates=reordered) if o.id == other.id else o for o in scene.objects)
     )
     for rank in range(Arrangements(scene).count):
-        taken = Arrangements(scene).taken(rank)
+        taken = Arrangements(scene).take(rank)
         assert taken.object("chair_1").shape_id == taken.object("chair_2").shape_id
         assert Arrangements(taken).is_taken(rank)
-    mixed = Arrangements(scene).taken(1, only={"chair_1"})
+    mixed = Arrangements(scene).take(1, only={"chair_1"})
     assert mixed.object("chair_2") == scene.object("chair_2")
     assert mixed.object("chair_1").shape_id != one.shape_id
 
@@ -120,7 +120,7 @@ def test_costs_that_begin_late_or_end_early_keep_their_level() -> None:
     run = LayoutRun("paper", 0.0, Scene())
     run.read([(0.1, (("a", 3.0),)), (0.2, (("a", 2.0), ("b", 5.0))), (0.3, (("b", 4.0),))])
     assert run.costs == {"a": [3.0, 2.0, 2.0], "b": [5.0, 5.0, 4.0]}
-    assert not run.paused
+    assert not run.is_paused
 
 
 def test_a_ray_meets_the_nearest_object_and_passes_walls_from_behind() -> None:

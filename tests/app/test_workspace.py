@@ -58,7 +58,7 @@ def test_only_who_asked_goes_to_another_project(workspace: Workspace, tmp_path: 
     session = workspace.editors[0].session
     people = [LocalClient(session.server, number) for number in (0, 1)]
     for person in people:
-        session.ui_thread.post(lambda person=person: session.joined(person))
+        session.ui_thread.post(lambda person=person: session.join(person))
     assert session.ui_thread.wait(60.0)
     went: list[tuple[int, str]] = []
     for number, client in session.clients.items():
@@ -103,7 +103,7 @@ def test_many_who_leave_wait_in_one_thread(workspace: Workspace, monkeypatch: py
     """Each page that was closed left a thread behind for a minute."""
     before = threading.active_count()
     for _ in range(120):
-        workspace._left()
+        workspace._leave()
     assert threading.active_count() <= before + 1
     looked: list[int] = []
     monkeypatch.setattr(workspace, "close_unused", lambda: looked.append(1))

@@ -40,7 +40,7 @@ def test_an_empty_mask_shows_nothing() -> None:
 
 
 def test_large_objects_are_looked_at_coarsely() -> None:
-    camera = Camera(CAMERA.intrinsics.scaled(2000, 1500), CAMERA.T_world_camera)
+    camera = Camera(CAMERA.intrinsics.resize(2000, 1500), CAMERA.T_world_camera)
     mask = np.ones((1500, 2000), dtype=bool)
     view = surface_view(parts(), slots_of(parts()), Pose.upright((0.0, 0.0, 0.0)), camera, mask)
     assert view is not None

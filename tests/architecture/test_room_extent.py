@@ -57,13 +57,13 @@ def test_with_measured_depth_a_wall_that_has_something_behind_it_pushes_nothing(
     observed = room.scene(architecture=sliver(0.95), camera=looking_north(5.0))
     for reasoned in (False, True):
         scene = containing_room(observed, objects_measured=not reasoned)
-        assert scene.plane("wall_1").seen == reasoned
+        assert scene.plane("wall_1").is_seen == reasoned
     measured = containing_room(observed)
     settled = FeasibleRecipe(LIBRARY, depth_measured=True).optimise(measured, Progress())[0]
     for item in measured.objects:
         assert np.linalg.norm(settled.object(item.id).pose.position - item.pose.position) < 0.02
     beside = replace(observed, objects=observed.objects[1:], supports=observed.supports[1:])
-    assert containing_room(beside).plane("wall_1").seen
+    assert containing_room(beside).plane("wall_1").is_seen
 
 
 def test_a_room_that_contains_everything_is_left_alone() -> None:
@@ -90,7 +90,7 @@ def test_lamps_hang_from_a_ceiling_that_was_not_seen() -> None:
     room.objects[0] = replace(room.objects[0], category="ceiling lamp")
     scene = containing_room(room.scene(architecture=sliver(), camera=looking_north(5.0)))
     (ceiling,) = scene.architecture.by_role("ceiling")
-    assert not ceiling.seen
+    assert not ceiling.is_seen
     assert ceiling.normal[2] < -0.99
     assert scene.support_of(lamp).parent == ceiling.id
     level = float(ceiling.polygon[0, 2])

@@ -146,7 +146,7 @@ class EditorPage:
 
     def on_photo(self, x: float, y: float) -> tuple[float, float]:
         """Where a pixel of the photo is on the page."""
-        marked = self.client.marked
+        marked = self.client.inputs
         assert marked is not None
         photo = marked.photo
         left, top = self.page.evaluate(ON_PHOTO, [x, y, photo.width, photo.height])

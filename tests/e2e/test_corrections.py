@@ -116,7 +116,7 @@ def test_views_focus_and_selecting_by_keys(editor: EditorPage) -> None:
     editor.until(lambda: len(editor.selection) == 5, "everything")
     editor.row("lamp").click()
     editor.until(lambda: editor.selection == ("lamp_1",))
-    lifted = scene(editor).object("lamp_1").pose.moved((0.0, 0.0, 0.2))
+    lifted = scene(editor).object("lamp_1").pose.move((0.0, 0.0, 0.2))
     session.ui_thread.post(lambda: session.edit("lift", lambda s: edits.move(s, "lamp_1", lifted)))
     editor.until(lambda: scene(editor).object("lamp_1").pose == lifted)
     editor.page.keyboard.press("g")

@@ -91,7 +91,7 @@ def test_of_a_moved_object_only_its_part_of_the_picture_is_drawn(editor: EditorP
         drawn = watching.page.evaluate(FRAME)
         here = session.scene.object("lamp_1").pose
         for step in range(1, 6):
-            pose = here.moved((0.0, 0.05 * step, 0.0))
+            pose = here.move((0.0, 0.05 * step, 0.0))
             session.ui_thread.post(lambda p=pose: session.viewport.preview({"lamp_1": p}))
             watching.page.wait_for_function(f"{FRAME} > {drawn}")
             drawn = watching.page.evaluate(FRAME)

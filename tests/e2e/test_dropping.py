@@ -49,7 +49,7 @@ def test_a_photo_with_boxes_then_its_depth(editor: EditorPage, tmp_path: Path) -
     boxes.write_bytes(boxes_json(box(30, 60, 180, 270), box(200, 90, 400, 400), box(5, 200, 90, 300)))
     drop(editor, photo(tmp_path / "room.png"), boxes)
     editor.notice("2 files.zip: a photo (room.png) with boxes (list of boxes)")
-    editor.until(lambda: editor.session.unfinished, "a project of its own", seconds=90)
+    editor.until(lambda: editor.session.is_unbuilt, "a project of its own", seconds=90)
     editor.until(lambda: len(editor.session.inputs.boxes) == 3, "with its boxes")
     editor.at_board()
     keep_picture(editor, "dropped-photo-and-boxes")

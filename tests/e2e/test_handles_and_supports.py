@@ -65,7 +65,7 @@ def test_what_is_pasted_into_another_project_lands_in_view_inside(
     serve: Callable[..., Running], visit: Callable[[Running], EditorPage], tmp_path: Path
 ) -> None:
     far = make_project(tmp_path / "projects" / "far")
-    moved = edits.move(far.load_scene(), "table_1", far.load_scene().object("table_1").pose.moved((40.0, 9.0, 3.0)))
+    moved = edits.move(far.load_scene(), "table_1", far.load_scene().object("table_1").pose.move((40.0, 9.0, 3.0)))
     far.save_scene(moved)
     make_project(tmp_path / "projects" / "near")
     editor = visit(serve(far.folder, PlainLibrary()))
@@ -113,7 +113,7 @@ def test_what_a_recipe_made_worse_is_named_marked_and_put_back(editor: EditorPag
 
     def beside_the_table(scene: Scene) -> Scene:
         lamp = scene.object("lamp_1")
-        return edits.place(scene, {"lamp_1": lamp.pose.moved((1.2, 0.0, 0.0))})
+        return edits.place(scene, {"lamp_1": lamp.pose.move((1.2, 0.0, 0.0))})
 
     def ended() -> None:
         run = session.layout_run = LayoutRun("paper", 0.0, before)

@@ -211,7 +211,7 @@ def test_only_the_selection_is_optimised_compared_and_put_back(editor: EditorPag
 
     def lift() -> None:
         for chair in ("chair_1", "chair_2"):
-            pose = session.scene.object(chair).pose.moved((0.0, 0.0, 0.25))
+            pose = session.scene.object(chair).pose.move((0.0, 0.0, 0.25))
             session.edit("lift", lambda s, c=chair, p=pose: edits.move(s, c, p))
 
     session.ui_thread.post(lift)
@@ -273,7 +273,7 @@ def test_a_photo_begins_another_project_from_the_list_of_projects(editor: Editor
     expect(editor.page.get_by_role("tab", name="Photo", exact=True)).to_have_attribute("aria-selected", "true")
     expect(editor.page.locator("p").filter(has_text="attic.png").first).to_be_visible()
     assert editor.session is not editor.running.session, "the open project stays as it is"
-    assert editor.session.unfinished
+    assert editor.session.is_unbuilt
 
 
 def test_dark_keys_palette_and_units(editor: EditorPage) -> None:

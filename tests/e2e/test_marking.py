@@ -29,7 +29,7 @@ def proposed(editor: EditorPage) -> EditorPage:
     """The example's photo was uploaded and proposals lie on it."""
     editor.tab("Photo")
     editor.upload("Upload a photo", EXAMPLE / "photo.jpg")
-    editor.until(lambda: editor.session.unfinished, "a project of its own")
+    editor.until(lambda: editor.session.is_unbuilt, "a project of its own")
     editor.at_board()
     editor.dismiss_notices()
     editor.page.wait_for_selector(".dio-canvas-proposal", timeout=60_000)

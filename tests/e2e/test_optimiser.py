@@ -26,7 +26,7 @@ def choose_recipe(editor: EditorPage, name: str) -> None:
 
 def lift_chair(editor: EditorPage) -> Scene:
     session = editor.running.session
-    lifted = session.scene.object("chair_1").pose.moved((0.0, 0.0, 0.3))
+    lifted = session.scene.object("chair_1").pose.move((0.0, 0.0, 0.3))
     session.ui_thread.post(lambda: session.edit("lift", lambda s: edits.move(s, "chair_1", lifted)))
     editor.until(lambda: session.scene.object("chair_1").pose == lifted)
     return session.scene
@@ -102,7 +102,7 @@ def test_an_optimisation_is_paused_gone_on_with_and_cancelled(
     expect(editor.button("Resume")).to_be_visible()
     run = session.layout_run
     assert run is not None
-    assert run.paused
+    assert run.is_paused
     seen = editor.still(lambda: len(run.times_s))  # the step that was on its way ends
     editor.button("Resume").click()
     editor.until(lambda: len(run.times_s) > seen, "it goes on")

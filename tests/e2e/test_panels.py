@@ -101,7 +101,7 @@ def test_a_shape_found_by_words_is_inserted_on_the_selected_table(editor: Editor
 @pytest.mark.parametrize("recipe", ["Tidy up", "As in the paper"])
 def test_the_layout_is_optimised_before_your_eyes_and_undone(editor: EditorPage, recipe: str) -> None:
     session = editor.running.session
-    lifted = session.scene.object("chair_1").pose.moved((0.0, 0.0, 0.3))
+    lifted = session.scene.object("chair_1").pose.move((0.0, 0.0, 0.3))
     session.ui_thread.post(lambda: session.edit("lift", lambda s: _with_pose(s, "chair_1", lifted)))
     editor.until(lambda: session.scene.object("chair_1").pose == lifted)
     editor.settle()  # rows move down when the chair is said to float: a click in between would be on two of them

@@ -41,7 +41,7 @@ def started(editor: EditorPage, photo: Path) -> EditorPage:
     scene = editor.session.scene
     editor.tab("Photo")
     editor.upload("Upload a photo", photo)
-    editor.until(lambda: editor.session.unfinished, "a project of its own")
+    editor.until(lambda: editor.session.is_unbuilt, "a project of its own")
     editor.at_board()
     editor.dismiss_notices()
     assert editor.running.session.scene is scene, "the open scene stays"
@@ -141,7 +141,7 @@ def test_escape_deselects_first_and_an_empty_view_offers_to_go_on(started: Edito
 def test_a_box_drawn_by_hand_gets_the_kind_that_is_recognised(editor: EditorPage) -> None:
     editor.tab("Photo")
     editor.upload("Upload a photo", EXAMPLE / "photo.jpg")
-    editor.until(lambda: editor.session.unfinished, "a project of its own")
+    editor.until(lambda: editor.session.is_unbuilt, "a project of its own")
     editor.at_board()
     known = json.loads((EXAMPLE / "boxes.json").read_text())["boxes"]
     editor.draw_box(next(tuple(b["bbox"]) for b in known if b["class"] == "bookshelf"))

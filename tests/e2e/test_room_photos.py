@@ -53,9 +53,9 @@ def test_a_photo_of_the_same_room_is_added_looked_through_and_undone(
         name.fill(box.label)
         name.press("Enter")
         editor.until(lambda w=box.label: editor.session.further_photos[0].inputs.boxes[-1].label == w, "named")
-    marked = replace(editor.client.marked, boxes=photos.second.boxes)
+    marked = replace(editor.client.inputs, boxes=photos.second.boxes)
     editor.session.ui_thread.post(lambda: editor.client.annotate("mark the others", marked))
-    editor.until(lambda: editor.client.marked.boxes == photos.second.boxes, "marked")
+    editor.until(lambda: editor.client.inputs.boxes == photos.second.boxes, "marked")
     editor.settle()
     keep_picture(editor, "room-photos-marked")
     editor.button("Add to the scene").click()
@@ -134,13 +134,13 @@ def test_a_360_degree_photo_is_marked_and_looked_around_in(
     editor.page.locator('.dio .tile[data-arg="all"]').click()
     editor.until(lambda: editor.client.view.camera.through_photo, "looked around")
     editor.settle()
-    first = editor.client.looked_through[0]
+    first = editor.client.viewpoint[0]
     assert first is not None
     left, top, width, height = editor.canvas_box()
     middle = (left + width / 2, top + height / 2)
     editor.drag(middle, (middle[0] - width / 5, middle[1]))
     ahead = first.T_world_camera[:3, 2]
-    editor.until(lambda: editor.client.looked_through[0].T_world_camera[:3, 2] @ ahead < 0.98, "turned")
+    editor.until(lambda: editor.client.viewpoint[0].T_world_camera[:3, 2] @ ahead < 0.98, "turned")
     assert np.linalg.norm(editor.client.view.camera.position - at[:3, 3]) < 0.01
     keep_picture(editor, "sphere-turned")
     editor.button("Mark furniture").click()

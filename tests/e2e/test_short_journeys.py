@@ -100,7 +100,7 @@ def nearest(scene: Scene) -> SceneObject:
 def test_from_a_photo_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
     editor, page = hand.editor, hand.editor.page
     hand.choose_file(page.locator("#dio-start label.main"), EXAMPLE / "photo.jpg")
-    editor.until(lambda: editor.session.unfinished, "a project of its own")
+    editor.until(lambda: editor.session.is_unbuilt, "a project of its own")
     editor.at_board()
     page.locator(".dio-canvas-proposal").first.wait_for(timeout=60_000)
     page.screenshot(path=str(ARTEFACTS / "journey-board.png"))
@@ -109,7 +109,7 @@ def test_from_a_photo_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
     hand.click(page.get_by_role("button", name="Mark it myself").first, "Mark it myself")
     editor.until(lambda: session.jobs.status is None, "stopped", seconds=60)
     expect(page.locator(".dio-canvas-lines")).to_have_count(0)
-    assert session.unfinished
+    assert session.is_unbuilt
     page.get_by_role("button", name="Build at once").click()
     editor.button("Cancel").click()
     editor.until(lambda: session.jobs.status is None, "stopped again", seconds=60)
@@ -200,7 +200,7 @@ def test_from_a_photo_to_a_reviewed_room_without_marking_anything(hand: Hand) ->
     """Somebody who knows the room answers what the review asks, by keys; what it took is written down."""
     editor, page = hand.editor, hand.editor.page
     hand.choose_file(page.locator("#dio-start label.main"), EXAMPLE / "photo.jpg")
-    editor.until(lambda: editor.session.unfinished, "a project of its own")
+    editor.until(lambda: editor.session.is_unbuilt, "a project of its own")
     session = editor.session
     editor.until(lambda: bool(session.scene.objects), "built", seconds=BUILD_S)
     card = page.locator(".job.card", has_text="sure")

@@ -86,7 +86,7 @@ def test_what_is_no_picture_is_said_and_the_start_page_stays(newcomer: EditorPag
     with page.expect_file_chooser() as chosen:
         begun.locator("label.main").click()
     chosen.value.set_files(str(good))
-    newcomer.until(lambda: newcomer.session.unfinished, "a project of its own")
+    newcomer.until(lambda: newcomer.session.is_unbuilt, "a project of its own")
     newcomer.at_board()
     expect(begun).to_have_count(0)
     expect(page.locator("#dio-tour")).to_have_count(0)

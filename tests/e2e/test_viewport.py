@@ -74,7 +74,7 @@ def test_planes_show_their_edges_and_follow_a_moved_wall(editor: EditorPage) -> 
 
 def test_what_floats_and_what_is_unsure_is_marked_in_the_view_and_in_the_list(editor: EditorPage) -> None:
     session = editor.running.session
-    lifted = session.scene.object("chair_1").pose.moved((0.0, 0.0, 0.4))
+    lifted = session.scene.object("chair_1").pose.move((0.0, 0.0, 0.4))
     session.ui_thread.post(lambda: session.edit("found", lambda s: edits.move(seen_in_photo(s), "chair_1", lifted)))
     editor.until(lambda: session.badges.get("chair_1") == ("floats",), "it floats")
     expect(editor.page.locator('.dio .row[data-arg="chair_1"] .chip')).to_have_text("floats")

@@ -107,7 +107,7 @@ def test_sizes_that_a_recipe_changed_are_told_and_put_back(editor: EditorPage) -
 
 def test_tidying_up_changes_no_side_by_more_than_a_quarter(editor: EditorPage) -> None:
     session, start = editor.session, editor.session.scene
-    inside = start.object("chair_1").pose.moved((0.9, 0.6, 0.25))  # half in the table, and floating
+    inside = start.object("chair_1").pose.move((0.9, 0.6, 0.25))  # half in the table, and floating
     session.ui_thread.post(lambda: session.edit("push", lambda s: edits.move(s, "chair_1", inside)))
     editor.until(lambda: session.scene.object("chair_1").pose == inside)
     editor.tab("Arrange")

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.editing.hand_placed import fixed_ids, mark_by_hand
+from diorama_core.editing.hand_placed import ids_to_keep, mark_by_hand
 from diorama_core.scene import edits
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from diorama_core.scene.types import Scene
@@ -12,7 +12,7 @@ from tests.app.small_room import furnished_scene
 
 
 def _moved(scene: Scene, object_id: str, by: tuple[float, float, float]) -> Scene:
-    return mark_by_hand(scene, edits.move(scene, object_id, scene.object(object_id).pose.moved(by)))
+    return mark_by_hand(scene, edits.move(scene, object_id, scene.object(object_id).pose.move(by)))
 
 
 def _by_hand(scene: Scene) -> set[str]:
@@ -34,7 +34,7 @@ def test_a_size_and_a_turn_are_noted_and_a_colour_is_not() -> None:
 
 
 def test_what_carries_something_placed_stays_too() -> None:
-    assert fixed_ids(_moved(furnished_scene(), "lamp_1", (0.05, 0.0, 0.0))) == {"lamp_1", "table_1"}
+    assert ids_to_keep(_moved(furnished_scene(), "lamp_1", (0.05, 0.0, 0.0))) == {"lamp_1", "table_1"}
 
 
 def _against(scene: Scene, object_id: str, wall: str) -> Scene:
@@ -54,5 +54,5 @@ def test_dragging_away_from_a_wall_clears_against() -> None:
 def test_an_edit_that_says_against_which_wall_is_believed() -> None:
     scene = furnished_scene()
     said = _against(scene, "chair_1", "wall_3")
-    moved = edits.move(said, "chair_1", said.object("chair_1").pose.moved(0.3 * said.plane("wall_3").normal))
+    moved = edits.move(said, "chair_1", said.object("chair_1").pose.move(0.3 * said.plane("wall_3").normal))
     assert mark_by_hand(scene, moved).support_of("chair_1").adheres_to == ("wall_3",)

@@ -91,7 +91,7 @@ def test_a_door_that_one_photo_cuts_off_is_as_the_other_shows_it(home: Scene, as
     true, box = cut.object("door"), cut.object("door").box_px
     assert box is not None
     assert (box[0] == 0.0) != (box[2] == 640.0)
-    badly = replace(true, pose=replace(true.pose.moved((0.1, 0.1, 0.0)), scale=(1.0, 0.6, 1.0)))
+    badly = replace(true, pose=replace(true.pose.move((0.1, 0.1, 0.0)), scale=(1.0, 0.6, 1.0)))
     built = replace(cut, objects=tuple(badly if o is true else o for o in cut.objects))
     first, second = as_one_door(built, whole, "door", "way-in")
     assert first.object("door").size_m[1] == pytest.approx(0.9, abs=0.01)

@@ -172,9 +172,9 @@ def test_what_is_wrong_is_found_and_what_is_right_is_not() -> None:
     scene = furnished_scene()
     collisions = Collisions(LIBRARY)
     assert problems(scene, LIBRARY, collisions) == {}
-    raised = edits.move(scene, "chair_1", scene.object("chair_1").pose.moved((0, 0, 0.2)))
+    raised = edits.move(scene, "chair_1", scene.object("chair_1").pose.move((0, 0, 0.2)))
     assert problems(raised, LIBRARY, collisions) == {"chair_1": ("floats",)}
-    away = edits.move(scene, "chair_1", scene.object("chair_1").pose.moved((-3.0, 0, 0)))
+    away = edits.move(scene, "chair_1", scene.object("chair_1").pose.move((-3.0, 0, 0)))
     assert problems(away, LIBRARY, collisions) == {"chair_1": ("outside",)}
     into = edits.move(scene, "chair_1", scene.object("chair_2").pose)
     assert set(problems(into, LIBRARY, collisions)) == {"chair_1", "chair_2"}

@@ -77,7 +77,7 @@ def test_what_was_found_out_of_the_room_stands_on_what_the_photo_shows_it_on() -
     assert camera is not None
     foot = camera.project(np.array([[0.1, 2.2, 0.74]]))[0]
     lamp = replace(_lamp(-0.7, 7.3, 1.1), box_px=(foot[0] - 20.0, foot[1] - 70.0, foot[0] + 20.0, foot[1]))
-    below = replace(lamp, pose=lamp.pose.moved((0.0, 0.0, -0.9)))
+    below = replace(lamp, pose=lamp.pose.move((0.0, 0.0, -0.9)))
     after = insert(scene, Posed(below, Support("new", "wall_4", "mounted on")), PlainLibrary())
     new = after.objects[-1]
     edge = after.support_of(new.id)

@@ -21,7 +21,7 @@ def test_what_fell_off_is_held_by_the_floor() -> None:
     assert table is not None
     beside = room.object(table.parent).corners_world[:, :2].max(axis=0) + 0.3
     to_floor = float(ball.size_m[2]) / 2 - float(ball.pose.position[2])
-    low = ball.pose.moved((*(beside - ball.pose.position[:2]), to_floor))
+    low = ball.pose.move((*(beside - ball.pose.position[:2]), to_floor))
     after = reattach(room, edits.place(room, {ball.id: low}))
     edge = after.support_of(ball.id)
     assert edge is not None

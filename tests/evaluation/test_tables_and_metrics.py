@@ -103,7 +103,7 @@ def test_another_frame_changes_nothing(view, library):
 def test_missing_moved_and_floating_objects_count(view, library):
     truth = without_unasked(view)
     first, *rest = truth.objects
-    lifted = replace(rest[0], pose=rest[0].pose.moved([0, 0, 0.5]))
+    lifted = replace(rest[0], pose=rest[0].pose.move([0, 0, 0.5]))
     left = {o.id for o in (lifted, *rest[1:])}
     edges = tuple(s for s in truth.supports if s.child in left and (s.parent in left or truth.has_plane(s.parent)))
     scores = scene_scores(view, replace(truth, objects=(lifted, *rest[1:]), supports=edges), library)
@@ -112,7 +112,7 @@ def test_missing_moved_and_floating_objects_count(view, library):
     assert scores.every.acc == 0
     assert scores.relation < 1
     assert scores.supported < 1
-    outside = replace(first, pose=first.pose.moved([20, 0, 0]))
+    outside = replace(first, pose=first.pose.move([20, 0, 0]))
     far = scene_scores(view, replace(truth, objects=(outside, *rest)), library)
     assert far.out_of_bounds == pytest.approx(1 / 8)
 
@@ -137,7 +137,7 @@ def test_objects_over_the_edge_of_the_floor_are_out_of_bounds(view):
     scene = without_unasked(view)
     assert out_of_bounds_share(scene) == 0
     first, *rest = scene.objects
-    half_out = replace(first, pose=first.pose.moved([30, 0, 0]))
+    half_out = replace(first, pose=first.pose.move([30, 0, 0]))
     assert out_of_bounds_share(replace(scene, objects=(half_out, *rest))) == pytest.approx(1 / 8)
     assert out_of_bounds_share(replace(scene, architecture=Architecture())) == 1
 
@@ -159,7 +159,7 @@ def test_gravity_moves_what_floats(view, library):
     pytest.importorskip("mujoco")
     scene = without_unasked(view)
     still = scene_scores(view, scene, library, physics=True)
-    lifted = replace(scene, objects=tuple(replace(o, pose=o.pose.moved([0, 0, 0.3])) for o in scene.objects))
+    lifted = replace(scene, objects=tuple(replace(o, pose=o.pose.move([0, 0, 0.3])) for o in scene.objects))
     fallen = scene_scores(view, lifted, library, physics=True)
     assert still.stable > fallen.stable
     assert still.drift_cm < 2
@@ -189,7 +189,7 @@ def test_an_empty_scene_is_a_failure_not_a_crash(view, library):
     scores = scene_scores(view, Scene(camera=view.camera), library)
     assert scores.found == 0
     assert scores.pairs.acc == 0
-    assert SceneScores.failed(8).own.count == 8
+    assert SceneScores.failure(8).own.count == 8
 
 
 def test_the_photo_world_is_below_the_camera(view):
@@ -235,8 +235,8 @@ def test_the_recipe_is_long_enough_and_names_are_unique():
 
 
 def _tables():
-    failed = PoseScores.failed(4)
-    result = CaseResult("living-0-0", SceneScores.failed(4), 1.0, 1.0, "DioramaError: nothing")
+    failed = PoseScores.failure(4)
+    result = CaseResult("living-0-0", SceneScores.failure(4), 1.0, 1.0, "DioramaError: nothing")
     item = RetrievalResult(
         "living-0-0",
         "a",
@@ -323,7 +323,7 @@ def test_the_graph_of_the_scene_itself_does_not_vouch_for_its_supports(view, lib
     truth = without_unasked(view)
     edge = next(s for s in truth.supports if not truth.has_plane(s.parent))
     item = truth.object(edge.child)
-    fallen = replace(item, pose=item.pose.moved([30, 0, item.size_m[2] / 2 - item.pose.position[2]]))
+    fallen = replace(item, pose=item.pose.move([30, 0, item.size_m[2] / 2 - item.pose.position[2]]))
     edges = tuple(replace(s, parent="floor", parent_surface=None) if s is edge else s for s in truth.supports)
     scene = replace(truth, objects=tuple(fallen if o is item else o for o in truth.objects), supports=edges)
     scores = scene_scores(view, scene, library)

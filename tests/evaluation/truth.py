@@ -11,5 +11,5 @@ from diorama_core.synthesis.truth import TruthView
 
 def without_unasked(view: TruthView) -> Scene:
     """The true scene of the objects asked for only: what a perfect system would return."""
-    retained = tuple(view.scene.objects[k] for k in view.asked)
+    retained = tuple(view.scene.objects[k] for k in view.indices)
     return replace(view.scene, objects=retained, supports=true_supports(view))

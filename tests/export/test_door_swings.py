@@ -38,7 +38,7 @@ def test_a_free_door_opens_into_the_room() -> None:
     assert not swing.outward
     assert swing.free_rad == pytest.approx(np.pi / 2)
     (leaf,) = swing.leaves
-    opened = leaf.turned(leaf.outline, swing.free_rad)
+    opened = leaf.turn(leaf.outline, swing.free_rad)
     assert opened[:, 1].min() < 3.4 - 0.6, "into the room"
     assert opened[:, 1].max() < 3.4 + 1e-6
 
@@ -54,7 +54,7 @@ def test_a_door_behind_furniture_opens_out() -> None:
     assert swing.outward
     assert swing.can_open
     (leaf,) = swing.leaves
-    assert leaf.turned(leaf.outline, swing.free_rad)[:, 1].max() > 3.4 + 0.6
+    assert leaf.turn(leaf.outline, swing.free_rad)[:, 1].max() > 3.4 + 0.6
 
 
 def test_a_door_between_furniture_does_not_open_and_its_plan_has_no_swing() -> None:
@@ -83,7 +83,7 @@ def test_leaves_stay_within_their_frame_s_width_when_they_open_out(name: str) ->
     for swing in swings.values():
         assert swing.outward
         for leaf in swing.leaves:
-            opened = leaf.turned(leaf.outline, swing.free_rad)
+            opened = leaf.turn(leaf.outline, swing.free_rad)
             assert np.abs(opened[:, 1]).max() <= shape.size_m[1] / 2 + 1e-3
             assert opened[:, 0].min() < -0.3
 

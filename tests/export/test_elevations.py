@@ -37,10 +37,10 @@ def test_a_wall_shows_its_openings_and_what_is_at_it() -> None:
     (outline,) = door.outlines
     # Seen from inside, the wall at the back runs from x = -2 at the left to 2 at the right.
     np.testing.assert_allclose([outline.min(axis=0), outline.max(axis=0)], [[2.56, 0.01], [3.44, 1.99]], atol=0.02)
-    assert hung.drawn_m == pytest.approx((size[1], size[2]))
+    assert hung.extent_m == pytest.approx((size[1], size[2]))
     np.testing.assert_allclose(np.concatenate(hung.outlines).mean(axis=0), [1.5, 1.6], atol=0.02)
     lengths = {d.text for d in drawn.dimensions}
-    assert {"4.00", "2.60", f"{door.drawn_m[0]:.2f}", f"{size[1]:.2f}"} <= lengths
+    assert {"4.00", "2.60", f"{door.extent_m[0]:.2f}", f"{size[1]:.2f}"} <= lengths
     placed = np.array([d.start + d.offset for d in drawn.dimensions])
     assert ((placed < 0.0) | (placed > [4.0, 2.6])).any(axis=1).all(), "lengths stand outside the wall"
 

@@ -137,7 +137,7 @@ def test_plain_colours_share_one_picture() -> None:
     one_colour = np.tile(np.uint8([0, 0, 255]), (8, 8, 1))
     red, blue = Material("red", (1.0, 0.0, 0.0)), Material("blue", (1.0, 1.0, 1.0), texture=one_colour, roughness=0.2)
     glass = Material("glass", alpha=0.3)
-    joined = GameMaterials([red, blue, glass]).merged(map(triangle, (red, blue, glass, glass)))
+    joined = GameMaterials([red, blue, glass]).merge(map(triangle, (red, blue, glass, glass)))
     assert [len(s.faces) for s in joined] == [2, 2]
     palette = joined[0]
     assert palette.uv is not None

@@ -186,7 +186,7 @@ def _glb(scene: ExportScene) -> bytes:
 
 def test_identical_shapes_share_a_mesh_and_colours_do_not_leak() -> None:
     scene = furnished_room(LIBRARY)
-    third = replace(scene.object("c1"), id="c3", pose=scene.object("c1").pose.moved(np.array([0.0, 1.0, 0.0])))
+    third = replace(scene.object("c1"), id="c3", pose=scene.object("c1").pose.move(np.array([0.0, 1.0, 0.0])))
     document = gltf_reader.check(glb_bytes(replace(scene, objects=(*scene.objects, third)), LIBRARY))
     plain, painted = node(document, "chair (c1)")["mesh"], node(document, "chair (c2)")["mesh"]
     assert node(document, "chair (c3)")["mesh"] == plain

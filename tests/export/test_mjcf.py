@@ -66,7 +66,7 @@ def test_objects_stay_for_two_seconds(source: str) -> None:
 def test_an_object_in_the_air_is_reported_as_falling() -> None:
     scene, library = scene_of("boxes")
     lifted = scene.objects[0]
-    lifted = replace(lifted, pose=lifted.pose.moved(np.array([0.0, 0.0, 0.5])))
+    lifted = replace(lifted, pose=lifted.pose.move(np.array([0.0, 0.0, 0.5])))
     moved = replace(scene, objects=(lifted, *scene.objects[1:]))
     report = stability(gather(moved, library))
     assert report.unstable[0].object_id == lifted.id
@@ -80,7 +80,7 @@ def test_what_stands_beside_its_carrier_is_welded_to_it_and_noted() -> None:
     depth = float(dresser.size_m[0] / 2)
     for forward, free in ((depth + lamp.size_m[0], False), (depth - 0.05, True)):
         away = dresser.pose.R_world_object[:, 0] * forward
-        physical = physical_scene(gather(edits.move(scene, "lamp_1", lamp.pose.moved(away)), library))
+        physical = physical_scene(gather(edits.move(scene, "lamp_1", lamp.pose.move(away)), library))
         body = next(b for b in physical.bodies if b.node.id == "lamp_1")
         assert body.free == free
         assert any("lamp_1 stands beside dresser_1" in note for note in physical.notes) != free
@@ -88,8 +88,8 @@ def test_what_stands_beside_its_carrier_is_welded_to_it_and_noted() -> None:
 
 def test_a_floor_that_shakes_hard_makes_things_fall_and_a_gentle_one_does_not() -> None:
     scene = gathered("fittings")
-    assert not stability(scene, shake=Shake(0.05, 2.0, 1.0)).fallen
-    fallen = stability(scene, shake=Shake(1.5, 1.0, 2.0)).fallen
+    assert not stability(scene, shake=Shake(0.05, 2.0, 1.0)).falls
+    fallen = stability(scene, shake=Shake(1.5, 1.0, 2.0)).falls
     assert "lamp_1" in {d.object_id for d in fallen}
     assert all(d.free for d in fallen)
 

@@ -59,7 +59,7 @@ def test_a_rug_stays_where_it_is_and_holds_up_only_what_stands_on_it() -> None:
     scene, library = scene_of("fittings")
     rug, chair = scene.object("rug_1"), scene.object("chair_1")
     standing = replace(
-        chair, pose=chair.pose.moved(np.append((rug.pose.position - chair.pose.position)[:2], rug.size_m[2]))
+        chair, pose=chair.pose.move(np.append((rug.pose.position - chair.pose.position)[:2], rug.size_m[2]))
     )
     scene = replace(
         scene,

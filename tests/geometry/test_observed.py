@@ -103,10 +103,10 @@ def test_rays_that_are_left_out_would_meet_nothing(places):
     poses = PoseBatch(turns, np.array(places), np.tile([1.3, 0.6, 1.0], (count, 1)))
     every = caster.cast(of.origin_world, of.directions_world, poses)
     hits = of.hits(caster, poses)
-    assert np.array_equal(of.silhouettes(caster, poses), every.covered)
+    assert np.array_equal(of.silhouettes(caster, poses), every.is_hit)
     assert np.array_equal(hits.depth_m, every.depth_m)
     assert np.array_equal(hits.normals_world, every.normals_world)
-    assert np.array_equal(hits.triangles[hits.covered], every.triangles[every.covered])
+    assert np.array_equal(hits.triangles[hits.is_hit], every.triangles[every.is_hit])
 
 
 def test_a_shape_in_the_middle_of_the_window_is_met():

@@ -64,7 +64,7 @@ def test_doors_and_windows_find_their_wall_and_hidden_ones_cut_none() -> None:
     walls = scene.architecture.by_role("wall")
     assert wall_of(WINDOW, walls, scene) is WALL
     assert wall_of(DOOR, walls, scene) is WALL, "right behind it"
-    away = replace(DOOR, id="away", pose=DOOR.pose.moved((0.0, -1.5, 0.0)))
+    away = replace(DOOR, id="away", pose=DOOR.pose.move((0.0, -1.5, 0.0)))
     assert wall_of(away, walls, scene) is None
     cut = with_openings(scene)
     assert area(cut.plane("wall_3")) < area(WALL) - 2.5

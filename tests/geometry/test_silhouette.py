@@ -32,10 +32,10 @@ def test_rays_in_the_shape_s_frame_see_what_a_renderer_sees(yaw, x, y, sx, sz) -
     directions = CAMERA.rays(np.stack([columns.ravel() + 0.5, rows.ravel() + 0.5], axis=1))
     caster = ShapeCaster(MESH)
     hits = caster.cast(CAMERA.position, directions, batch(pose))
-    assert (caster.covers(CAMERA.position, directions, batch(pose)) == hits.covered).all()
+    assert (caster.covers(CAMERA.position, directions, batch(pose)) == hits.is_hit).all()
     truth = render_buffers([(MESH, pose.matrix)], CAMERA)
-    both = hits.covered[0] & truth.silhouette.ravel()
-    assert (hits.covered[0] != truth.silhouette.ravel()).mean() < 0.003
+    both = hits.is_hit[0] & truth.silhouette.ravel()
+    assert (hits.is_hit[0] != truth.silhouette.ravel()).mean() < 0.003
     assert np.abs(hits.depth_m[0] - truth.depth_m.ravel())[both].max() < 1e-2
     agreement = (hits.normals_world[0] * truth.normals_world.reshape(-1, 3)).sum(axis=1)[both]
     assert np.mean(agreement > 0.99) > 0.97

@@ -25,7 +25,7 @@ def test_rooms_of_a_home_are_tidied_one_by_one() -> None:
     for name in twins:  # into the table of its own room
         table = home.object(name.replace("chair_1", "table_1"))
         shift = 0.6 * (table.pose.position - home.object(name).pose.position) * (1.0, 1.0, 0.0)
-        home = edits.move(home, name, home.object(name).pose.moved(shift))
+        home = edits.move(home, name, home.object(name).pose.move(shift))
     seen = []
     stage = RoomByRoom(recipe("feasible", PlainLibrary()))
     tidy, report = stage.optimise(home, Progress(), lambda scene, costs: seen.append(scene))

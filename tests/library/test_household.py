@@ -98,8 +98,8 @@ def test_light_passes_through_glass_but_not_through_clay(tmp_path: Path) -> None
     across = np.array([[-1.0, 0.0, 0.02, 2.0, 0.0, 0.0]], dtype=np.float32)
     for shape_id, blocked in (("cup-tumbler", False), ("cup-beaker", True)):
         world = World([PlacedSurface(shape_surfaces(library, shape_id), np.eye(4), 0)])
-        assert world.caster.first_hits(across).found.all()
-        assert bool(world.shadow_caster().occluded(across, far=1.0)[0]) is blocked
+        assert world.caster.first_hits(across).is_hit.all()
+        assert bool(world.shadow_caster().is_occluded(across, far=1.0)[0]) is blocked
 
 
 @pytest.mark.parametrize(

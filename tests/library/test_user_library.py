@@ -26,16 +26,16 @@ from tests.app.small_room import PlainLibrary
 def test_names_folders_and_deletions_are_kept(tmp_path: Path) -> None:
     path = tmp_path / "own.json"
     assert read_own_models(path) == OwnModels()
-    models = OwnModels().named("lamp", "  Grandma's\nlamp ").filed("lamp", "Heirlooms").without("vase").without("lamp")
+    models = OwnModels().rename("lamp", "  Grandma's\nlamp ").file("lamp", "Heirlooms").without("vase").without("lamp")
     write_own_models(path, models)
     assert read_own_models(path) == models
     assert models.names == {"lamp": "Grandma's lamp"}
-    assert models.restored("lamp").deleted == ("vase",)
-    assert models.named("lamp", " ").names == {}
+    assert models.restore("lamp").deleted == ("vase",)
+    assert models.rename("lamp", " ").names == {}
 
 
 def test_a_corrected_model_takes_name_and_folder_of_the_one_before() -> None:
-    models = OwnModels().named("lamp", "Lamp").filed("lamp", "Old").superseded("lamp", "lamp~2")
+    models = OwnModels().rename("lamp", "Lamp").file("lamp", "Old").supersede("lamp", "lamp~2")
     assert models.names["lamp~2"] == "Lamp"
     assert models.folders["lamp~2"] == "Old"
     assert models.deleted == ("lamp",)

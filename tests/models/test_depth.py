@@ -153,7 +153,7 @@ class _Room(torch.nn.Module):
 
     def __init__(self, sky_rows: int) -> None:
         super().__init__()
-        k = CAMERA.scaled(SIDE, SIDE)
+        k = CAMERA.resize(SIDE, SIDE)
         self.register_buffer("depth", torch.full((1, 1, SIDE, SIDE), WALL_M * 300.0 / ((k.fx + k.fy) / 2)))
         sky = torch.zeros(1, 1, SIDE, SIDE)
         sky[:, :, :sky_rows] = 0.9

@@ -189,14 +189,14 @@ def test_an_unpinned_revision_is_resolved_and_recorded(hub: Hub, store: ModelSto
     for revision in (None, "points-and-boxes"):
         unpinned = _network(id=f"small-{revision}", revision=revision)
         _pull(store, unpinned)
-        assert store.installed(unpinned).revision == SHA
+        assert store.record(unpinned).revision == SHA
 
 
 def test_without_a_published_checksum_later_downloads_are_supported_to_the_first(hub: Hub, store: ModelStore) -> None:
     unpublished = _network(files=(ModelFile("onnx/model.onnx", len(GRAPH)), ModelFile("tokenizer.json", len(TOKENS))))
-    assert unpublished.checked_by.startswith("size checked; unverified (no published checksum)")
-    assert _network().checked_by.startswith("unverified")
-    assert _network(files=(_PLAIN,)).checked_by == "published checksum"
+    assert unpublished.check_words.startswith("size checked; unverified (no published checksum)")
+    assert _network().check_words.startswith("unverified")
+    assert _network(files=(_PLAIN,)).check_words == "published checksum"
     _pull(store, unpublished)
     store.forget(unpublished)
     hub.corrupt = True

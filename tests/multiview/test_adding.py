@@ -69,7 +69,7 @@ def test_seen_things_join_new_ones_come_and_what_was_moved_stays() -> None:
 def test_a_photo_in_which_nothing_is_found_is_one_line() -> None:
     photos, library = two_photos(SMALL), built_in_library()
     grey = Inputs(Photo(np.full((60, 80, 3), 128, np.uint8), "grey.png", (80, 60)))
-    new = FurtherPhoto("grey", grey, replace(photos.camera, intrinsics=photos.camera.intrinsics.scaled(80, 60)))
+    new = FurtherPhoto("grey", grey, replace(photos.camera, intrinsics=photos.camera.intrinsics.resize(80, 60)))
     with pytest.raises(InputError, match="nothing is marked in grey"):
         with_photo(
             photos.scene, (), new, frozenset(), frozenset(), library, choose,

@@ -46,7 +46,7 @@ WEST = SeenRoom(
 
 
 def sides(architecture: Architecture) -> list[tuple[float, ...]]:
-    return sorted(tuple(np.round(w.normal[:2], 3) + 0.0) for w in architecture.by_role("wall") if w.seen)
+    return sorted(tuple(np.round(w.normal[:2], 3) + 0.0) for w in architecture.by_role("wall") if w.is_seen)
 
 
 def test_walls_that_only_another_photo_sees_are_the_rooms() -> None:

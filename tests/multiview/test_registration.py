@@ -92,7 +92,7 @@ def test_pixels_of_one_place_have_no_epipolar_distance() -> None:
 def test_a_photo_of_something_else_is_one_line() -> None:
     pytest.importorskip("pycolmap", reason="needs pycolmap (pip install 'diorama[photos]')")
     grey = [np.full((120, 160, 3), 90 + n, np.uint8) for n in range(2)]
-    known = PlacedPhoto(UnposedPhoto("first", grey[0], 150.0), Camera(K.scaled(160, 120), CAMERAS[0].T_world_camera))
+    known = PlacedPhoto(UnposedPhoto("first", grey[0], 150.0), Camera(K.resize(160, 120), CAMERAS[0].T_world_camera))
     with pytest.raises(InputError, match=r"new does not join: .* take it from a step or two beside"):
         registered_camera(UnposedPhoto("new", grey[1], None), [known], lambda camera, px: np.ones(len(px)))
 

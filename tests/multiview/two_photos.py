@@ -57,7 +57,7 @@ def _made(size: tuple[int, int]) -> TwoPhotos:
     beside = Camera(camera.intrinsics, level_pose(place, turned, -float(np.arcsin(ahead[2]))))
     views = [studio.view(c, size, with_empty_room=False) for c in (camera, beside)]
     there = views[0].camera.T_world_camera @ np.linalg.inv(camera.T_world_camera) @ beside.T_world_camera
-    seen = set(views[0].asked) & set(views[1].asked)
+    seen = set(views[0].indices) & set(views[1].indices)
     items = views[0].scene.objects
     gone = [items[k] for k in sorted(seen) if items[k].category in ("chair", "picture")][:2]
     scene = remove(views[0].scene, [o.id for o in gone])

@@ -80,7 +80,7 @@ def test_planes_and_the_scale_have_deviations() -> None:
     assert said.scale_sigma == KNOWN_LENGTH_SIGMA
     measured = believed(Inputs(plain_photo()), MEASURED)
     assert measured.scale_sigma == MEASURED.along
-    assert max(p.sigma_m or 0.0 for p in measured.architecture.by_role("wall") if p.seen) < min(PLAIN.wall_m)
+    assert max(p.sigma_m or 0.0 for p in measured.architecture.by_role("wall") if p.is_seen) < min(PLAIN.wall_m)
 
 
 def test_headings_become_quarter_turns_from_where_it_faces() -> None:

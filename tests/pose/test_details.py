@@ -41,8 +41,8 @@ def photo_of_chest(mesh: trimesh.Trimesh) -> tuple[np.ndarray, Observed]:
     batch = PoseBatch(POSE.R_world_object[None], POSE.position[None], POSE.scale[None])
     rays = CAMERA.rays(np.stack([x.ravel(), y.ravel()], axis=1))
     hits = ShapeCaster(mesh).cast(CAMERA.position, rays, batch)
-    mask = hits.covered.reshape(k.height, k.width)
-    local = CAMERA.position + rays * np.where(hits.covered[0], hits.depth_m[0], 0)[:, None] - POSE.position
+    mask = hits.is_hit.reshape(k.height, k.width)
+    local = CAMERA.position + rays * np.where(hits.is_hit[0], hits.depth_m[0], 0)[:, None] - POSE.position
     front = (local @ POSE.R_world_object)[:, 0].reshape(mask.shape)
     grey = np.where(mask, np.where(front > 0.215, 190, 120), 60).astype(np.uint8)
     rows, columns = np.nonzero(mask)
@@ -87,8 +87,8 @@ def photo_of(shape: ShapeAppearance, brightness: float) -> tuple[np.ndarray, Obs
     x, y = np.meshgrid(np.arange(k.width) + 0.5, np.arange(k.height) + 0.5)
     batch = PoseBatch(POSE.R_world_object[None], POSE.position[None], POSE.scale[None])
     hits = shape.caster.cast(CAMERA.position, CAMERA.rays(np.stack([x.ravel(), y.ravel()], axis=1)), batch)
-    mask = hits.covered.reshape(k.height, k.width)
-    rgb = shape.face_rgba[np.where(hits.covered[0], hits.triangles[0], 0), :3].reshape(k.height, k.width, 3)
+    mask = hits.is_hit.reshape(k.height, k.width)
+    rgb = shape.face_rgba[np.where(hits.is_hit[0], hits.triangles[0], 0), :3].reshape(k.height, k.width, 3)
     rows, columns = np.nonzero(mask)
     box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
     lit = np.where(mask[..., None], brightness * rgb, 60).astype(np.uint8)

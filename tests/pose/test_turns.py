@@ -37,9 +37,9 @@ def photo_of(room: Room, light=WHITE) -> np.ndarray:
     hits = appearance.caster.cast(room.camera.position, directions, batch(item.pose))
     colour, slope = light
     strength = 1.0 - slope * hits.normals_world[0, :, 0]
-    linear = (appearance.face_rgba[np.where(hits.covered, hits.triangles, 0)[0], :3] / 255.0) ** 2.2 * colour
+    linear = (appearance.face_rgba[np.where(hits.is_hit, hits.triangles, 0)[0], :3] / 255.0) ** 2.2 * colour
     shown = 255 * np.clip(linear * strength[:, None], 0, 1) ** (1 / 2.2)
-    return np.where(hits.covered[0][:, None], shown, 120).reshape(k.height, k.width, 3).astype(np.uint8)
+    return np.where(hits.is_hit[0][:, None], shown, 120).reshape(k.height, k.width, 3).astype(np.uint8)
 
 
 def batch(pose: Pose) -> PoseBatch:

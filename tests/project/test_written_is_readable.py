@@ -75,7 +75,7 @@ def _read_all(folder: Path) -> None:
     assert load_photos(project)[1] == ()
     still_placed(project, project.load_scene())
     owner(folder).encode()
-    for unsaved in Recovery(folder / "unsaved")._unsaved_of_others(project):
+    for unsaved in Recovery(folder / "unsaved")._others(project):
         unsaved.scene()
 
 

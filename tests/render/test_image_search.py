@@ -70,11 +70,11 @@ def test_words_keep_the_search_within_a_kind(library: StoredLibrary) -> None:
 
 def test_features_are_made_once(library: StoredLibrary, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     search = ImageSearch(library, tmp_path / "views")
-    first = search.prepared(library.shapes()[:2])
+    first = search.prepare(library.shapes()[:2])
     assert len(first) == 2
     assert first.values.shape == (2, len(SEARCH_GRID), WIDTH)
     monkeypatch.setattr(image_search, "shape_features", None)  # calling it would fail
-    assert len(search.prepared(library.shapes()[:2])) == 2
+    assert len(search.prepare(library.shapes()[:2])) == 2
 
 
 def test_preparing_a_stored_library_on_processes(library: StoredLibrary, tmp_path: Path) -> None:
@@ -87,7 +87,7 @@ def test_preparing_a_stored_library_on_processes(library: StoredLibrary, tmp_pat
     assert [shape_id for shape_id, _ in prepared.failures] == [bad.id]
     assert "damaged" in prepared.failures[0][1]
     assert TemplateCache().has(good)
-    assert len(ImageSearch(mixed).prepared([good])) == 1
+    assert len(ImageSearch(mixed).prepare([good])) == 1
     retained = default_cache_dir() / "features" / EMBEDDED_FEATURES / f"{good.content_hash}.npy"
     assert retained.exists()  # what retrieval compares
 

@@ -102,7 +102,7 @@ def _painted(object_id: str, red: float = 1.0):
 
 
 def _moved(object_id: str):
-    return lambda s: edits.move(s, object_id, s.object(object_id).pose.moved((0.1, 0.0, 0.0)))
+    return lambda s: edits.move(s, object_id, s.object(object_id).pose.move((0.1, 0.0, 0.0)))
 
 
 def test_a_change_is_moved_past_those_of_others_and_undone_there() -> None:

@@ -34,7 +34,7 @@ def test_yaw_turns_the_front(yaw: float) -> None:
 def test_field_of_view_round_trips() -> None:
     k = Intrinsics.from_fov(800, 600, np.radians(63))
     assert np.degrees(k.horizontal_fov_rad) == pytest.approx(63)
-    assert k.scaled(400, 300).horizontal_fov_rad == pytest.approx(k.horizontal_fov_rad)
+    assert k.resize(400, 300).horizontal_fov_rad == pytest.approx(k.horizontal_fov_rad)
 
 
 def test_a_floor_seen_from_above_has_its_normal_up() -> None:

@@ -19,7 +19,7 @@ def test_shapes_are_picked_by_category_and_condition(f) -> None:
     low = f.pick("table", where=lambda s: s.size_m[2] < 0.5)
     assert low.size_m[2] < 0.5
     spread = Furnisher(PLAN, LIBRARY, np.random.default_rng(1), Spread(0.05, 0.02))
-    sizes = np.array([spread.sized(f.pick("bed").shape).scale for _ in range(50)])
+    sizes = np.array([spread.scale(f.pick("bed").shape).scale for _ in range(50)])
     assert 0.02 < np.log(sizes).std() < 0.1
     assert (np.abs(np.log(sizes)) <= 0.1 + 1e-9).all()
 

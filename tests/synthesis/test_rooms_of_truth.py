@@ -118,7 +118,7 @@ def test_a_studio_gives_every_view_as_if_it_were_alone(rooms, view, library):
 
 
 def test_nothing_hides_what_stands_alone(view, library):
-    index = max(view.asked, key=lambda k: view.visible_fraction[k])
+    index = max(view.indices, key=lambda k: view.visible_fraction[k])
     alone = replace(view.scene, objects=(view.scene.objects[index],), supports=())
     seen = render_truth(alone, view.camera, library, SIZE, with_empty_room=False)
     assert 0.9 < seen.visible_fraction[0] <= 1
@@ -140,8 +140,8 @@ def test_depth_and_scene_are_in_the_photos_world(view):
 
 
 def test_masks_boxes_and_shares_belong_together(view):
-    assert len(view.asked) >= 4
-    for index, found in zip(view.asked, true_objects(view)):
+    assert len(view.indices) >= 4
+    for index, found in zip(view.indices, true_objects(view)):
         item = view.scene.objects[index]
         assert (view.inputs.instances[found.mask] == item.mask_id).all()
         x0, y0, x1, y1 = item.box_px

@@ -55,7 +55,7 @@ def test_cut_meshes_and_objects_outside_are_found():
     into = replace(second, pose=replace(second.pose, position=first.pose.position))
     hit = colliding_pairs(replace(scene, objects=(first, into, *rest)), library)
     assert any({first.id, second.id} <= set(pair) for pair in hit)
-    sunk = replace(first, pose=first.pose.moved([0, 0, -0.05]))
+    sunk = replace(first, pose=first.pose.move([0, 0, -0.05]))
     assert first.id in survey_room("x", replace(scene, objects=(sunk, second, *rest)), library).outside
 
 

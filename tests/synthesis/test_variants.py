@@ -52,16 +52,16 @@ def test_what_falls_goes_back_to_its_place() -> None:
     """Things thrown about by metres do not stay there; those of the room do."""
     scene, library = scene_of("fittings")
     maker = VariantMaker(scene, library, ("poses",), VariantSettings(turn_rad=0.0, shift_m=0.5))
-    lifted = edits.move(scene, "lamp_1", scene.object("lamp_1").pose.moved(np.array([0.0, 0.0, 0.4])))
-    calmed = maker._calmed(lifted, {"lamp_1"})
+    lifted = edits.move(scene, "lamp_1", scene.object("lamp_1").pose.move(np.array([0.0, 0.0, 0.4])))
+    calmed = maker._calm(lifted, {"lamp_1"})
     np.testing.assert_allclose(calmed.object("lamp_1").pose.position, scene.object("lamp_1").pose.position)
     added = replace(scene.object("lamp_1"), id="extra", pose=lifted.object("lamp_1").pose)
-    assert not maker._calmed(edits.insert(scene, added), {"extra"}).has_object("extra")
+    assert not maker._calm(edits.insert(scene, added), {"extra"}).has_object("extra")
 
 
 def test_what_does_not_rest_in_the_room_is_locked() -> None:
     scene, library = scene_of("fittings")
-    lifted = edits.move(scene, "lamp_1", scene.object("lamp_1").pose.moved(np.array([0.0, 0.0, 0.1])))
+    lifted = edits.move(scene, "lamp_1", scene.object("lamp_1").pose.move(np.array([0.0, 0.0, 0.1])))
     calm, locked = lock_restless(lifted, library)
     assert locked == ("lamp_1",)
     assert not stability_report(calm, library).unstable

@@ -7,7 +7,7 @@ from diorama_core.editing.opening_insertion import with_opening
 from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.text.edit_plan import Light, Paint, RoomLength
-from diorama_core.text.edit_room import cover, covering_in_words, lengthen, lit, off_wall
+from diorama_core.text.edit_room import cover, covering_in_words, lengthen, light, off_wall
 from diorama_core.text.edit_words_room import room_edits
 from diorama_core.text.selecting import Selector
 from tests.text.edited import living_room
@@ -25,9 +25,9 @@ def test_the_room_is_lengthened_and_the_light_set() -> None:
     longer = lengthen(scene, RoomLength(side="width", by_m=0.5)).scene
     before, after = (np.sort(np.ptp(s.architecture.floor.polygon[:, :2], axis=0)) for s in (scene, longer))
     np.testing.assert_allclose(after - before, [0.5, 0.0], atol=0.06)  # the room is a little askew
-    assert lit(scene, Light(hour=8.0)).scene.light_settings.hour == 8.0
+    assert light(scene, Light(hour=8.0)).scene.light_settings.hour == 8.0
     with pytest.raises(EditRefused, match="which light"):
-        lit(scene, Light())
+        light(scene, Light())
 
 
 def test_away_from_the_wall_is_into_the_room() -> None:

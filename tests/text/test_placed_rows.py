@@ -60,6 +60,6 @@ def test_rows_without_room_and_wishes_that_the_whole_does_not_meet_are_named(cla
     rows = place_rows(empty, few, shapes, positioner, {})
     assert rows is not None
     assert rows.unmet(rows.scene) == []
-    away = replace(rows.block, pose=rows.block.pose.moved(rows.block.pose.R_world_object[:, 0]))
+    away = replace(rows.block, pose=rows.block.pose.move(rows.block.pose.R_world_object[:, 0]))
     assert [w.kind for w, _ in replace(rows, block=away).unmet(rows.scene)] == ["against wall"]
     assert np.allclose([o.size_m for o in rows.scene.objects], rows.scene.objects[0].size_m)

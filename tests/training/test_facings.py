@@ -34,7 +34,7 @@ def test_all_photos_at_once_decide_as_each_by_itself() -> None:
 
 def test_fitting_makes_what_was_annotated_likelier_and_leaves_what_is_told() -> None:
     model = FacingModel(cases())
-    fitted = model.fitted(beginning(), np.ones(8, bool))
+    fitted = model.fit(beginning(), np.ones(8, bool))
     assert fitted[NAMES.index("at_table")] > beginning()[NAMES.index("at_table")]
     assert [float(fitted[NAMES.index(name)]) for name in AS_TOLD] == [2.0, 2.0]
     assert model.is_right(fitted).all()
@@ -43,7 +43,7 @@ def test_fitting_makes_what_was_annotated_likelier_and_leaves_what_is_told() -> 
 def test_what_begins_at_nothing_stays_out() -> None:
     lacking = beginning()
     lacking[NAMES.index("at_table")] = 0.0
-    assert FacingModel(cases(2)).fitted(lacking, np.ones(4, bool))[NAMES.index("at_table")] == 0.0
+    assert FacingModel(cases(2)).fit(lacking, np.ones(4, bool))[NAMES.index("at_table")] == 0.0
 
 
 def test_folds_are_of_photos_and_a_certificate_tells_every_term(monkeypatch: pytest.MonkeyPatch) -> None:

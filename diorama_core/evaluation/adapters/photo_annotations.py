@@ -62,7 +62,7 @@ class AnnotatedPhoto(BaseModel):
     """Width and height of the original file."""
     objects: Annotated[tuple[AnnotatedObject, ...], Field(alias="things")]
 
-    def scaled(self, size: tuple[int, int]) -> AnnotatedPhoto:
+    def resize(self, size: tuple[int, int]) -> AnnotatedPhoto:
         """The annotation of the photo resized to a width and height."""
         sx, sy = size[0] / self.size[0], size[1] / self.size[1]
         boxes = [(x1 * sx, y1 * sy, x2 * sx, y2 * sy) for x1, y1, x2, y2 in (o.bbox for o in self.objects)]

@@ -127,7 +127,7 @@ def views_of(cases: tuple[Case, ...], library: ShapeLibrary) -> Iterator[tuple[C
         studio, cameras = studio_of(case, library)
         view = studio.view(cameras[case.view], SIZE, with_empty_room=False)
         for later in cameras[case.view + 1 :]:
-            if len(view.asked) >= MIN_ASKED:
+            if len(view.indices) >= MIN_ASKED:
                 break
             view = studio.view(later, SIZE, with_empty_room=False)
         yield case, view

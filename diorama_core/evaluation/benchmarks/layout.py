@@ -238,7 +238,7 @@ def _drags(seed: int, feasible: LayoutStage) -> list[Callable[[], object]]:
     calls = []
     for item in scene.objects[::5]:
         solver = DragSolver.prepare(scene, library, item.id)
-        calls += [step(solver, item.pose.moved(rng.normal(0.0, 0.2, 3) * [1.0, 1.0, 0.1])) for _ in range(6)]
+        calls += [step(solver, item.pose.move(rng.normal(0.0, 0.2, 3) * [1.0, 1.0, 0.1])) for _ in range(6)]
     return calls
 
 

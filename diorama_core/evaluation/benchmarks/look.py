@@ -186,11 +186,11 @@ def _one_room(
     start = time.process_time()
     made = fit.fitted(posed, seen.inputs, seen.objects, seen.geometry, seen.depth, Progress())
     made_s = time.process_time() - start
-    fitted, known = (seen.evaluated(("posed_scene",), posed=p, library=library) for p in (posed, made))
+    fitted, known = (seen.evaluate(("posed_scene",), posed=p, library=library) for p in (posed, made))
     before, after, balanced = fitted["posed_scene"], known["posed_scene"], known["balanced_inputs"].photo.rgb
     dressing = replace(seen, known={**known, "observed": after})
     start = time.process_time()
-    look: PhotoAppearance = dressing.evaluated(("appearance",))["appearance"]
+    look: PhotoAppearance = dressing.evaluate(("appearance",))["appearance"]
     materials_s = time.process_time() - start
     after = look.applied(after)
     flat = picture(replace(before, light=after.light), library, size=SIZE)
@@ -199,7 +199,7 @@ def _one_room(
         show(f"{name}, {given}", cv2.resize(balanced, SIZE, interpolation=cv2.INTER_AREA), flat, dressed)
     differences = [_difference(balanced, shown) for shown in (flat, dressed)]
     shown = [(scene, instances_seen(scene, library, size=SIZE)) for scene in (before, after)]
-    of_mask = {str(view.scene.objects[k].mask_id): k for k in view.asked}
+    of_mask = {str(view.scene.objects[k].mask_id): k for k in view.indices}
     looks = []
     for item in seen.objects:
         index = of_mask.get(str(item.mask_id))
@@ -208,7 +208,8 @@ def _one_room(
             masks = [pixels == _index(scene, item.id) for scene, pixels in shown]
             colours = _colours(view, index, masks, differences)
             looks.append(_measure(name, given, view, index, pair, seen.geometry.camera, colours, library))
-    true_light = main_light(room_light(view.scene), np.array([view.scene.objects[k].pose.position for k in view.asked]))
+    at = np.array([view.scene.objects[k].pose.position for k in view.indices])
+    true_light = main_light(room_light(view.scene), at)
     off_deg = light_error_deg(true_light, view.camera, look.light, seen.geometry.camera)
     return looks, (made_s, materials_s, len(seen.objects)), off_deg
 
@@ -255,7 +256,7 @@ def _outline_iou(
 
 def _outline(mesh: trimesh.Trimesh, pose: Pose, camera: Camera, window: Window) -> Bool[np.ndarray, "n"]:
     batch = PoseBatch(pose.R_world_object[None], pose.position[None], np.asarray(pose.scale)[None])
-    return ShapeCaster(mesh).cast(camera.position, camera.rays(window.centres_px), batch).covered[0]
+    return ShapeCaster(mesh).cast(camera.position, camera.rays(window.centres_px), batch).is_hit[0]
 
 
 def _difference(photo: Picture, shown: Picture) -> Float[np.ndarray, "h w"]:

@@ -255,7 +255,7 @@ def annotated_inputs(task: PhotoTask) -> AnnotatedInputs:
         expected, actual = ("{} x {}".format(*size) for size in (stated.size, inputs.photo.original_size))
         raise InputError(f"{task.path}: the annotations are of a picture of {expected} pixels, this one has {actual}")
     size = (inputs.photo.width, inputs.photo.height)
-    case = AnnotatedInputs(inputs, stated.scaled(size), tuple(range(len(stated.objects))))
+    case = AnnotatedInputs(inputs, stated.resize(size), tuple(range(len(stated.objects))))
     return perturb(case, task.perturbation) if task.perturbation else case
 
 

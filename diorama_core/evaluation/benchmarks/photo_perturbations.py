@@ -93,7 +93,7 @@ def expose(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
     """Lighter or darker, and warmer or cooler."""
     warm = float(np.sqrt(WHITE_BALANCE)) ** rng.choice([-1, 1])
     gain = 2.0 ** (EXPOSURE_STOPS * rng.choice([-1, 1])) * np.array([warm, 1.0, 1.0 / warm])
-    table = np.stack([_lit(np.arange(256) / 255.0, channel) for channel in gain], axis=-1)
+    table = np.stack([_light(np.arange(256) / 255.0, channel) for channel in gain], axis=-1)
     shown = np.rint(255 * table).astype(np.uint8)
     rgb = np.stack([shown[case.inputs.photo.rgb[..., c], c] for c in range(3)], axis=-1)
     case = _reframe(case, rgb, lambda box: box, case.inputs.intrinsics)
@@ -218,10 +218,10 @@ def _turn(annotated: AnnotatedObject) -> AnnotatedObject:
 def _recolour(annotated: AnnotatedObject, gain: Float[np.ndarray, "3"]) -> AnnotatedObject:
     if annotated.colour is None:
         return annotated
-    channels = (_lit(np.array([value / 255.0]), g)[0] for value, g in zip(annotated.colour, gain, strict=True))
+    channels = (_light(np.array([value / 255.0]), g)[0] for value, g in zip(annotated.colour, gain, strict=True))
     return annotated.model_copy(update={"colour": tuple(float(255.0 * c) for c in channels)})
 
 
-def _lit(display: Float[np.ndarray, "n"], gain: float) -> Float[np.ndarray, "n"]:
+def _light(display: Float[np.ndarray, "n"], gain: float) -> Float[np.ndarray, "n"]:
     """Display values, 0 to 1, in more or less light, clipped as cameras do."""
     return np.asarray(linear_to_srgb(np.clip(gain * srgb_to_linear(display), 0.0, 1.0)))

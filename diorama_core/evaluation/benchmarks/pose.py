@@ -124,7 +124,7 @@ class _Tally:
         self.groups: dict[str, list[tuple[float, ...]]] = {}
         self.groups_after: dict[str, list[tuple[float, ...]]] = {}
 
-    def finished(self, seed: int) -> PoseBench:
+    def result(self, seed: int) -> PoseBench:
         """All of them."""
         true, estimated = self.retained[TRUE_DEPTH], self.retained[ESTIMATED_DEPTH]
         poses = tuple((k, tuple(true[k]), tuple(estimated[k])) for k in RETRIEVALS)
@@ -159,7 +159,7 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
         step = progress.part(number / len(cases), (number + 1) / len(cases))
         _one_room(view, solvers, tally, step, case.name)
     progress.report(1.0, "done")
-    return tally.finished(seed)
+    return tally.result(seed)
 
 
 def _one_room(view: TruthView, solvers: SideBySide, tally: _Tally, progress: Progress, name: str) -> None:
@@ -189,7 +189,7 @@ def _one_room(view: TruthView, solvers: SideBySide, tally: _Tally, progress: Pro
 
 def _retrieve(solvers: SideBySide, seen: SeenInput | None) -> tuple[RankedShapes, ...] | None:
     """One more shape of every object than any table keeps."""
-    return None if seen is None else _try(solvers.retrieved, seen, max(RETRIEVALS) + 1)
+    return None if seen is None else _try(solvers.retrieve, seen, max(RETRIEVALS) + 1)
 
 
 def _firsts(retrieved: tuple[RankedShapes, ...] | None, count: int) -> tuple[RankedShapes, ...] | None:
@@ -205,7 +205,7 @@ def _scenes(
 ) -> Mapping[str, Scene]:
     if seen is None or (retrieved is None and shapes != GIVEN):
         return {}
-    chosen = shapes_of(solvers.given(view, seen), retrieved or (), shapes, COMPARED_SHAPES)
+    chosen = shapes_of(solvers.true_shapes(view, seen), retrieved or (), shapes, COMPARED_SHAPES)
     return _try(solvers.scenes, seen, chosen) or {}
 
 
@@ -259,7 +259,7 @@ def _arrange(
 def with_true_graph(view: TruthView, scene: Scene) -> Scene:
     """The prediction with the true support edges among the objects that were found; planes by role and nearness."""
     scene = align_to_truth(scene, view)
-    truth = [view.scene.objects[k] for k in view.asked]
+    truth = [view.scene.objects[k] for k in view.indices]
     names = {t.id: m.id for t, m in zip(truth, match_all(truth, scene)) if m is not None}
     edges = []
     for edge in true_supports(view):
@@ -307,13 +307,13 @@ def with_true_architecture(view: TruthView, scene: Scene) -> Scene:
 def _count_groups(
     view: TruthView, scene: Scene | None, library: ShapeLibrary, groups: dict[str, list[tuple[float, ...]]]
 ) -> None:
-    truth = [view.scene.objects[k] for k in view.asked]
+    truth = [view.scene.objects[k] for k in view.indices]
     match = [None] * len(truth) if scene is None else match_all(truth, align_to_truth(scene, view))
     true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
     placed = [None if m is None else as_placed(m) for m in match]
     checks = pair_checks(true, placed)
     others = max(len(truth) - 1, 1)
-    for row, index in enumerate(view.asked):
+    for row, index in enumerate(view.indices):
         grids = (checks.rotation[row], checks.translation[row], checks.scale[row])
         every = grids[0] & grids[1] & grids[2]
         shares = [(float(g.sum()) - 1) / others for g in (*grids, every)]

@@ -77,7 +77,7 @@ class PoseScores:
     """None where nothing came out: what is not there does not collide, and is not free of collisions either."""
 
     @classmethod
-    def failed(cls, asked: int) -> PoseScores:
+    def failure(cls, asked: int) -> PoseScores:
         """The prediction failed."""
         pairs, every, per_object = (
             Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
@@ -89,9 +89,9 @@ class PoseScores:
 def pose_scores(view: TruthView, scene: Scene | None, library: ShapeLibrary) -> PoseScores:
     """Alignment, relations and overlap of a predicted scene; everything wrong where there is none."""
     if scene is None:
-        return PoseScores.failed(len(view.asked))
+        return PoseScores.failure(len(view.indices))
     scene = align_to_truth(scene, view)
-    truth = [view.scene.objects[k] for k in view.asked]
+    truth = [view.scene.objects[k] for k in view.indices]
     match = match_all(truth, scene)
     placed = [None if m is None else as_placed(m) for m in match]
     true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
@@ -141,9 +141,9 @@ class SeenInput:
     def scene(self, posed: tuple[PosedCandidates, ...], library: ShapeLibrary) -> Scene:
         """The scene before any layout, without colours."""
         uncoloured = {"white_room": self.known["architecture"], "colours": {}}
-        return cast(Scene, self.evaluated(("posed_scene",), posed=posed, library=library, **uncoloured)["posed_scene"])
+        return cast(Scene, self.evaluate(("posed_scene",), posed=posed, library=library, **uncoloured)["posed_scene"])
 
-    def evaluated(self, wanted: Iterable[str], **given: Any) -> Artefacts:
+    def evaluate(self, wanted: Iterable[str], **given: Any) -> Artefacts:
         """What follows from this and what is given besides, by the pipeline's plan."""
         return evaluate(self.stages, {**self.known, **given}, wanted, Runner(None))
 
@@ -203,12 +203,12 @@ class SideBySide:
         """The solvers that need no networks."""
         return cls(library, RenderAndCompare(library), CorrespondencePose(library, grid=HALF_GRID))
 
-    def retrieved(self, seen: SeenInput, keep: int) -> tuple[RankedShapes, ...]:
+    def retrieve(self, seen: SeenInput, keep: int) -> tuple[RankedShapes, ...]:
         """Ranked shapes of every object."""
         stage = HierarchicalRetrieval(self.library, keep=keep)
         return stage.retrieve(seen.inputs, seen.objects, seen.geometry, Progress())
 
-    def given(self, view: TruthView, seen: SeenInput) -> tuple[RankedShapes, ...]:
+    def true_shapes(self, view: TruthView, seen: SeenInput) -> tuple[RankedShapes, ...]:
         """The true shape of every object."""
         return TrueShapes.of(view).retrieve(seen.inputs, seen.objects, seen.geometry, Progress())
 

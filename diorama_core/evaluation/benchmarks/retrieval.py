@@ -115,7 +115,7 @@ def run(
         progress.report(k / len(cases), case.name)
         same, unseen = _ranks(everything, view), _ranks(others, view)
         alone = [(name, whole(view), others_only(view)) for name, (whole, others_only) in rows.items()]
-        for index in view.asked:
+        for index in view.indices:
             result = _result(case.name, view, index, same, unseen, library)
             object_id = view.scene.objects[index].id
             shapes = [(name, a.get(object_id, ()), b.get(object_id, ())) for name, a, b in alone]

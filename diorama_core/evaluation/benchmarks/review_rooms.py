@@ -70,7 +70,7 @@ class KnownRoom:
 
     def score(self, scene: Scene) -> tuple[float, int]:
         """How many of the objects that the photo shows are where, as large and turned as in the room."""
-        items = [self.view.scene.objects[k] for k in self.view.asked]
+        items = [self.view.scene.objects[k] for k in self.view.indices]
         true = [as_placed(t, self.all_shapes.shape(t.shape_id).symmetry) for t in items]
         placed = [None if m is None else as_placed(m) for m in match_all(items, align_to_truth(scene, self.view))]
         alignment = object_alignment(true, placed)
@@ -139,7 +139,7 @@ def run(
     for _, view in attempt(cases, view_of, left_out):
         given: Inputs = photo_only(view) if named else without_names(view)
         scene = build_scene(given, searched, stages=embedded_stages(given, searched)).scene
-        items = [view.scene.objects[k] for k in view.asked]
+        items = [view.scene.objects[k] for k in view.indices]
         pairs = zip(items, match_all(items, align_to_truth(scene, view)), strict=True)
         truth = {match.id: true for true, match in pairs if match is not None}
         rooms.append(KnownRoom(scene, view, truth, searched, library))

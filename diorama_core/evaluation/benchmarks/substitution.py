@@ -157,7 +157,7 @@ class _TrueShape:
 
 def true_objects_of(objects: tuple[DetectedObject, ...], view: TruthView) -> dict[str, SceneObject]:
     """For the id of every detected object the true one whose box is most alike, each used once."""
-    left = {k: view.scene.objects[k] for k in view.asked}
+    left = {k: view.scene.objects[k] for k in view.indices}
     objects_by_id: dict[str, SceneObject] = {}
     for item in objects:
         scored = [(float(box_iou(np.array(item.box), np.array(o.box_px))), -k) for k, o in left.items()]

@@ -91,7 +91,7 @@ def loosen_name(box: LabelledBox) -> LabelledBox:
 def jitter(view: TruthView) -> Inputs:
     """The picture with every edge of every box off by 4 % of the box (standard deviation), as detectors' are."""
     given = photo_only(view)
-    rng = np.random.default_rng(len(view.asked))
+    rng = np.random.default_rng(len(view.indices))
     return replace(given, boxes=tuple(replace(b, box=_jitter(b.box, view, rng)) for b in given.boxes))
 
 
@@ -275,5 +275,5 @@ def build_case(
     except Exception as error:  # whatever goes wrong, the scene counts as failed
         log.warning("%s failed: %s", case.name, error)
         spent, waited = time.process_time() - begun, time.perf_counter() - wall
-        failed = SceneScores.failed(len(view.asked))
+        failed = SceneScores.failure(len(view.indices))
         return None, CaseResult(case.name, failed, spent, waited, f"{type(error).__name__}: {error}")

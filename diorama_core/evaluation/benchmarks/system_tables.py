@@ -101,7 +101,7 @@ def scene_table(results: Results) -> Table:
     columns = (Column("own Acc", better="↑"), Column("height off", ".2f", "↓"), *(c for c, _ in _SCENE))
     rows = []
     for name, cases in results:
-        before = [c.before or SceneScores.failed(c.scores.asked) for c in cases]
+        before = [c.before or SceneScores.failure(c.scores.asked) for c in cases]
         if any(c.before is not None for c in cases):
             rows.append(_scene_row(f"{name}, before layout", before))
         rows.append(_scene_row(name, [c.scores for c in cases]))
@@ -143,7 +143,7 @@ def substitution_table(results: Results) -> Table:
     )
     rows = []
     for name, cases in results:
-        scores = ([c.before or SceneScores.failed(c.scores.asked) for c in cases], [c.scores for c in cases])
+        scores = ([c.before or SceneScores.failure(c.scores.asked) for c in cases], [c.scores for c in cases])
         alignments = [[s.own for s in part] for part in scores]
         rows.append(
             Row(

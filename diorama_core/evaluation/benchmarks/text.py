@@ -38,7 +38,7 @@ class Measured:
     seconds: float
 
     @property
-    def named(self) -> bool:
+    def is_named(self) -> bool:
         """Whether everything is met, or something is named as unmet."""
         return self.result.all_met or bool(self.notes)
 
@@ -169,7 +169,7 @@ def fidelity_table(prompts: Sequence[Measured]) -> Table:
                 lambda some: _share([p.result.room_relations for p in some]),
             ),
             (Column("prompts all met", ".3f", "↑"), lambda some: _mean([p.result.all_met for p in some])),
-            (Column("all met or named", ".3f", "↑"), lambda some: _mean([p.named for p in some])),
+            (Column("all met or named", ".3f", "↑"), lambda some: _mean([p.is_named for p in some])),
             (Column("s a prompt", ".1f", "↓"), lambda some: _mean([p.seconds for p in some])),
         ),
     )

@@ -149,12 +149,12 @@ def run(
         k = cases.index(case)
         part = progress.part(k / len(cases), (k + 1) / len(cases))
         room = _Room(case, library, tested, searched, progress)
-        results.append(room.scored(ALONE, views[:1], room.from_one_photo))
+        results.append(room.score(ALONE, views[:1], room.from_one_photo))
         for turn, n in enumerate(counts):
             part.report(0.2 + 0.8 * turn / len(counts), f"{case.name}: {n} photos")
             name = "one photo with its camera" if n == 1 else f"{n} photos with their cameras"
-            results.append(room.scored(name, views[:n], room.from_photos))
-        results.append(room.scored(SPHERE, views[:1], room.from_sphere))
+            results.append(room.score(name, views[:n], room.from_photos))
+        results.append(room.score(SPHERE, views[:1], room.from_sphere))
     progress.report(1.0, "done")
     return ViewsBench(tuple(results), tuple(left_out))
 
@@ -184,9 +184,9 @@ def photograph(case: Case, library: ShapeLibrary, count: int, size: tuple[int, i
     studio = Studio(scene, library)
     cameras = sample_cameras(scene, library, case.seed, count, size)
     views = [RoomView(studio.view(c, size, with_empty_room=False), c) for c in cameras]
-    first = next((v for v in views if len(v.truth.asked) >= MIN_ASKED), views[0])
+    first = next((v for v in views if len(v.truth.indices) >= MIN_ASKED), views[0])
     rest = [v for v in views if v is not first]
-    rest.sort(key=lambda v: -len(set(v.truth.asked) & set(first.truth.asked)))
+    rest.sort(key=lambda v: -len(set(v.truth.indices) & set(first.truth.indices)))
     return (first, *rest)
 
 
@@ -222,7 +222,7 @@ class _Room:
         """The scene of a 360 degree photo and its boxes, seen by the first photo's camera, with the boxes there."""
         room, first = furnish(self.case, self.tested), views[0]
         seen = sphere_photo(Studio(room, self.tested), sphere_place(room, self.case.seed))
-        marked = seen.marked(room.objects)
+        marked = seen.boxes(room.objects)
         photo = Photo(seen.rgb, "sphere.png", (seen.rgb.shape[1], seen.rgb.shape[0]))
         layout = layout_recipe("feasible", self.searched, depth_measured=True)
 
@@ -240,7 +240,7 @@ class _Room:
         objects = tuple(replace(o, box_px=named.get(o.id)) for o in scene.objects)
         return replace(scene, objects=objects, camera=first.camera)
 
-    def scored(self, way: str, views: Sequence[RoomView], build: Callable[[Sequence[RoomView]], Scene]) -> ViewsResult:
+    def score(self, way: str, views: Sequence[RoomView], build: Callable[[Sequence[RoomView]], Scene]) -> ViewsResult:
         """The own alignment of the first photo's objects; a build that fails has none right.
 
         Args:
@@ -249,7 +249,7 @@ class _Room:
             build: makes a scene of them.
         """
         begun, truth = time.process_time(), views[0].truth
-        items = [truth.scene.objects[k] for k in truth.asked]
+        items = [truth.scene.objects[k] for k in truth.indices]
         try:
             scene = align_to_truth(build(views), truth)
         except Cancelled:

@@ -127,7 +127,7 @@ def visible_colours(
     view = PinholeView(_reduce(scene.camera))
     rays = view.rays(pixel_centres(view.width, view.height)).reshape(-1, 6)
     hits = world.caster.first_hits(rays)
-    rays, hits = rays[hits.found], hits.chosen(hits.found)
+    rays, hits = rays[hits.is_hit], hits.select(hits.is_hit)
     places = world.places(rays, hits)
     _, light = world.rough_appearance(hits)
     shown = _with_gloss(light, places, rays)
@@ -152,4 +152,4 @@ def _with_gloss(base: Float[np.ndarray, "n 3"], places: Places, rays: Float[np.n
 def _reduce(camera: Camera) -> Camera:
     k = camera.intrinsics
     scale = min(1.0, _SIDE_PX / max(k.width, k.height))
-    return Camera(k.scaled(max(1, round(k.width * scale)), max(1, round(k.height * scale))), camera.T_world_camera)
+    return Camera(k.resize(max(1, round(k.width * scale)), max(1, round(k.height * scale))), camera.T_world_camera)

@@ -95,7 +95,7 @@ class SceneScores:
     """Share of the objects asked for whose shape is of the true kind."""
 
     @classmethod
-    def failed(cls, asked: int) -> SceneScores:
+    def failure(cls, asked: int) -> SceneScores:
         """The prediction failed."""
         pairs, every, per_object = (
             Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
@@ -118,9 +118,9 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
         library: Where the shapes of both are.
         physics: Whether to switch on gravity (seconds a scene; needs MuJoCo).
     """
-    truth = [view.scene.objects[k] for k in view.asked]
+    truth = [view.scene.objects[k] for k in view.indices]
     if not scene.objects:
-        return SceneScores.failed(len(truth))
+        return SceneScores.failure(len(truth))
     height_off = _height_off(scene, view)
     scene = align_to_truth(scene, view)
     match = match_all(truth, scene)
@@ -201,7 +201,7 @@ def as_placed(item: SceneObject, symmetry: int = 1) -> Placed:
 
 def relation_accuracy(view: TruthView, scene: Scene, match: list[SceneObject | None]) -> float:
     """Share of true edges found: the same parent object, or a plane of the same role, and the same relation."""
-    names = {t: m.id for t, m in zip((view.scene.objects[k].id for k in view.asked), match) if m is not None}
+    names = {t: m.id for t, m in zip((view.scene.objects[k].id for k in view.indices), match) if m is not None}
     edges = true_supports(view)
     right = 0
     for edge in edges:
@@ -239,7 +239,7 @@ def truly_supported_share(
         match: what stands for each true object; None without.
         library: where shapes come from.
     """
-    matches = {view.scene.objects[k].id: m for k, m in zip(view.asked, match) if m is not None}
+    matches = {view.scene.objects[k].id: m for k, m in zip(view.indices, match) if m is not None}
     edges, good = true_supports(view), 0
     for edge in edges:
         if view.scene.has_plane(edge.parent):
@@ -295,7 +295,7 @@ def image_iou(view: TruthView, scene: Scene, match: list[SceneObject | None], li
     """
     pairs = [
         (view.object_ids == k, None if placed is None else placed.id)
-        for k, placed in zip(view.asked, match, strict=True)
+        for k, placed in zip(view.indices, match, strict=True)
     ]
     return mean_mask_iou(pairs, scene, library, view.camera.intrinsics)
 
@@ -321,7 +321,7 @@ def mean_mask_iou(
     k = intrinsics or scene.camera.intrinsics
     items = [o for o in scene.objects if not o.hidden]
     caster = MeshCaster([(library.mesh(o.shape_id), o.pose.matrix) for o in items])
-    camera = Camera(scene.camera.intrinsics.scaled(k.width, k.height), scene.camera.T_world_camera)
+    camera = Camera(scene.camera.intrinsics.resize(k.width, k.height), scene.camera.T_world_camera)
     seen = caster.buffers(camera).instance
     index = {o.id: number for number, o in enumerate(items)}
     total = 0.0

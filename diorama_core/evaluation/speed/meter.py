@@ -46,7 +46,7 @@ class StageClock:
         self._begins = {f"{name}…": name for name in stages}
         self._running: tuple[str, _Meter] | None = None
 
-    def watched(self, progress: Progress) -> Progress:
+    def watch(self, progress: Progress) -> Progress:
         """A progress to hand to the build: goes nowhere else, stops when the given one is stopped."""
         return Progress(on_event=self._note, token=progress.token)
 

@@ -182,7 +182,7 @@ def _build(inputs: Inputs, library: ShapeLibrary, quantity: float, collected: Co
     """Build once and note what each stage took, and the whole."""
     clock = StageClock(STAGES)
     scenes: list[Scene] = []
-    whole = cost_of(lambda: scenes.append(build_scene(inputs, library, progress=clock.watched(progress)).scene))
+    whole = cost_of(lambda: scenes.append(build_scene(inputs, library, progress=clock.watch(progress)).scene))
     for stage in STAGES:
         if stage in clock.costs:
             collected.add(stage, quantity, clock.costs[stage])

@@ -136,7 +136,7 @@ def _wall_rows(
     settled = replace(problem, R=structure.R, p=structure.p, scale=structure.scale)
     in_room = is_in_polygon(structure.p[:, :2], problem.floor_outline)
     for w, wall in enumerate(problem.walls if problem.count else ()):
-        if not wall.seen:
+        if not wall.is_seen:
             continue
         surface = plane_surface(wall)
         ahead = structure.p @ wall.normal - wall.offset

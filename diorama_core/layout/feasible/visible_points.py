@@ -54,7 +54,7 @@ def visible_points(scene: Scene, library: ShapeLibrary, settings: LayoutSettings
     k = scene.camera.intrinsics
     shrink = min(1.0, settings.long_side_px / max(k.width, k.height))
     size = max(round(k.width * shrink), 1), max(round(k.height * shrink), 1)
-    camera = Camera(k.scaled(*size), scene.camera.T_world_camera)
+    camera = Camera(k.resize(*size), scene.camera.T_world_camera)
     view = MeshCaster([(library.mesh(o.shape_id), o.pose.matrix) for o in items]).buffers(camera)
     points = {}
     for number, item in enumerate(items):

@@ -147,7 +147,7 @@ class Problem:
             beside = float((surface.outward @ self.p[index] - surface.offset).max())
             ahead = float(wall.normal @ self.p[index]) - wall.offset
             near = beside <= radius and 0.0 <= ahead <= radius
-            if wall.seen and self.on_plane[index] != wall.id and near and not self.passes(wall, index):
+            if wall.is_seen and self.on_plane[index] != wall.id and near and not self.passes(wall, index):
                 walls.append(wall)
         return tuple(walls)
 

@@ -117,7 +117,7 @@ def first(folder: Path, *patterns: str) -> Path | None:
     return next((p for pattern in patterns for p in sorted(folder.glob(pattern))), None)
 
 
-def spoken(word: str) -> str:
+def plain_words(word: str) -> str:
     """`coffee_table`, `KITCHEN_STOOL` and `Lounge Chair / Cafe Chair` as people say it."""
     return " ".join(word.replace("_", " ").split("/")[0].split("(")[0].lower().split())
 
@@ -136,7 +136,7 @@ def _objaverse(root: Path) -> Iterator[DatasetEntry]:
         if notes is not None and uid not in classes:
             continue
         row = about.get(uid, {})
-        words = (spoken(classes[uid]),) if uid in classes else ()
+        words = (plain_words(classes[uid]),) if uid in classes else ()
         licence = str(row.get("license") or "see the model's page")
         yield DatasetEntry(path, uid, words, Given(up="+y", caption=str(row.get("name") or ""), licence=licence))
 
@@ -153,7 +153,7 @@ def _shapenet(root: Path) -> Iterator[DatasetEntry]:
             synset, model = path.relative_to(root).parts[:2]
             if not re.fullmatch(r"\d{8}", synset):
                 continue
-            words = tuple(spoken(w) for w in names.get(synset, _SHAPENET.get(synset, "")).split(",") if w)
+            words = tuple(plain_words(w) for w in names.get(synset, _SHAPENET.get(synset, "")).split(",") if w)
             front = "-z" if path.name == "model_normalized.obj" else None
             yield DatasetEntry(
                 path, f"{synset}-{model}", words, Given(up="+y", front=front, licence="ShapeNet terms of use")
@@ -190,7 +190,7 @@ def _hssd(root: Path) -> Iterator[DatasetEntry]:
         config = path.with_suffix(".object_config.json")
         stated = read_json(config) if config.is_file() else {}
         columns = ("main_category", "clean_category", "category", "wnlemmas", "super_category")
-        words = tuple(spoken(w) for c in columns for w in row.get(c, "").split(",") if w)
+        words = tuple(plain_words(w) for c in columns for w in row.get(c, "").split(",") if w)
         up, front = (_axis(stated.get(name) or row.get(name)) for name in ("up", "front"))
         front = None if front is not None and up is not None and front[1] == up[1] else front
         caption = row.get("name", "")
@@ -208,7 +208,7 @@ def _future(root: Path) -> Iterator[DatasetEntry]:
     about = {row["model_id"]: row for row in read_json(info)} if info is not None else {}
     for path in sorted(root.glob("**/raw_model.obj")):
         row = about.get(path.parent.name, {})
-        words = tuple(spoken(str(row[k])) for k in ("category", "super-category") if row.get(k))
+        words = tuple(plain_words(str(row[k])) for k in ("category", "super-category") if row.get(k))
         details = [str(row[k]).lower() for k in ("style", "material") if row.get(k)]
         caption = ", ".join([*words[:1], *details])
         licence = "Tianchi 3D-FUTURE terms of use"
@@ -223,10 +223,10 @@ def _abo(root: Path) -> Iterator[DatasetEntry]:
             row = json_from(path, line) if line.strip() else {}
             if row.get("3dmodel_id"):
                 kind = next((str(v.get("value", "")) for v in row.get("product_type", [])), "")
-                about[row["3dmodel_id"]] = (spoken(kind), _english(row.get("item_name", [])))
+                about[row["3dmodel_id"]] = (plain_words(kind), _english(row.get("item_name", [])))
     for path in sorted(root.glob("3dmodels/original/*/*.glb")):
         kind, name = about.get(path.stem, ("", ""))
-        words = tuple(w for w in (kind, spoken(name.split(",")[0])) if w)
+        words = tuple(w for w in (kind, plain_words(name.split(",")[0])) if w)
         yield DatasetEntry(path, path.stem, words, Given("+y", "+z", 1.0, caption=name[:120], licence="CC BY 4.0"))
 
 

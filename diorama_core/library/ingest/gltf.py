@@ -245,10 +245,10 @@ def _unscale(accessor: Json, rows: list[Json], views: list[bytes]) -> None:
 
 def _image_bytes(image: Json, views: list[bytes], references: References) -> bytes | None:
     if "bufferView" in image:
-        return references.checked_image(views[image["bufferView"]], str(image.get("name", "a picture inside the file")))
+        return references.check_image(views[image["bufferView"]], str(image.get("name", "a picture inside the file")))
     uri = image.get("uri", "")
     if uri.startswith("data:"):
-        return references.checked_image(_data_uri(uri), "a picture inside the file")
+        return references.check_image(_data_uri(uri), "a picture inside the file")
     return references.image(uri)
 
 

@@ -168,13 +168,13 @@ def name_evidence(stem: str, folders: Iterable[str] = (), parts: Iterable[str] =
     """
     for names, less, certainty in (([stem], 0.0, SURE), (list(folders), ELSEWHERE, SURE)):
         for name in names:
-            exact = _spoken_of(words_of(name))
+            exact = _kinds_in(words_of(name))
             near = {} if exact else _label_of(words_of(name))
             if exact or near:
                 weights = {category: weight + less for category, weight in (exact or near).items()}
                 return NameEvidence(weights, certainty if exact else NEARLY)
     for name in parts:
-        spoken = _spoken_of(words_of(name))
+        spoken = _kinds_in(words_of(name))
         if spoken:
             weights = {category: weight + ELSEWHERE for category, weight in spoken.items()}
             return NameEvidence({UNKNOWN.name: ONE_WORD + ELSEWHERE, **weights}, OF_A_PART)
@@ -184,7 +184,7 @@ def name_evidence(stem: str, folders: Iterable[str] = (), parts: Iterable[str] =
 def kind_in(name: str) -> str | None:
     """The one kind that a name speaks of, read as a file's name is; None where it says nothing."""
     words = words_of(name)
-    kinds = _spoken_of(words) or _label_of(words)
+    kinds = _kinds_in(words) or _label_of(words)
     return max(kinds, key=lambda kind: kinds[kind]) if kinds else None
 
 
@@ -197,7 +197,7 @@ def _label_of(words: tuple[str, ...]) -> dict[str, float]:
     return {}
 
 
-def _spoken_of(words: tuple[str, ...]) -> dict[str, float]:
+def _kinds_in(words: tuple[str, ...]) -> dict[str, float]:
     words = words[:8]
     if NOTHING.intersection(words):
         return {UNKNOWN.name: MANY_WORDS}

@@ -50,7 +50,7 @@ class References:
         Raises:
             LibraryError: when it lies outside the folder, is a web address, is too large or does not exist.
         """
-        return read_bytes(self._resolved(name), self.limits)
+        return read_bytes(self._resolve(name), self.limits)
 
     def image(self, name: str) -> bytes | None:
         """A referenced picture, or None with a warning when it is missing, unsafe, broken or too large."""
@@ -59,9 +59,9 @@ class References:
         except LibraryError as error:
             self.warn(f"texture left out: {error}")
             return None
-        return self.checked_image(data, name)
+        return self.check_image(data, name)
 
-    def checked_image(self, data: bytes, name: str) -> bytes | None:
+    def check_image(self, data: bytes, name: str) -> bytes | None:
         """The picture when it can be unpacked safely, else None with a warning."""
         problem = image_problem(data, self.limits)
         if problem:
@@ -74,7 +74,7 @@ class References:
         if message not in self.warnings:
             self.warnings.append(message)
 
-    def _resolved(self, name: str) -> Path:
+    def _resolve(self, name: str) -> Path:
         """The file of a name; where it leads nowhere, one whose path ends as the name does, capitals or not.
 
         A path of the author's own disk ends as the file lies here: `C:/Users/me/textures/cloth.png`.

@@ -248,7 +248,7 @@ def _canonical(model: Repaired, frame: Frame) -> list[trimesh.Trimesh]:
 def _join(group: Sequence[trimesh.Trimesh], T: Float[np.ndarray, "4 4"]) -> trimesh.Trimesh:
     counts = np.cumsum([0, *(len(m.vertices) for m in group)])
     notes, visual = notes_of(group[0]), group[0].visual
-    noted = {} if notes is None else {part_notes.KEY: notes.transformed(T).as_json()}
+    noted = {} if notes is None else {part_notes.KEY: notes.transform(T).as_json()}
     if isinstance(visual, TextureVisuals):
         visual = TextureVisuals(uv=np.concatenate([m.visual.uv for m in group]), material=visual.material)
     return trimesh.Trimesh(

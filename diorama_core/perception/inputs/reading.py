@@ -123,7 +123,7 @@ def _read_intrinsics(
         if not low <= fov_deg <= high:
             raise InputError(f"--fov {fov_deg:g}: give a horizontal field of view of {low:g} to {high:g} degrees")
         inner = Intrinsics.from_fov(*photo.original_size, float(np.deg2rad(fov_deg)))
-        return inner.scaled(photo.width, photo.height)
+        return inner.resize(photo.width, photo.height)
     if given is None:
         return None
     shown = ",".join(f"{v:g}" for v in given)
@@ -139,4 +139,4 @@ def _read_intrinsics(
         raise InputError(
             f"--intrinsics {shown}: the focal length does not fit {width} pixels of width; give pixels of this photo"
         )
-    return camera.scaled(photo.width, photo.height)
+    return camera.resize(photo.width, photo.height)

@@ -69,15 +69,15 @@ def test_a_360_degree_photo_turns_with_the_view_until_one_walks_away(session, cl
         camera = client.viser_client.camera
         camera.position, camera.look_at = at[:3, 3], at[:3, 3] + 0.002 * ahead
         camera.wxyz = quaternion_wxyz(level_axes(float(np.arctan2(y, x))))
-        views.turned(client)
-        seen, photo = client.looked_through
+        views.turn(client)
+        seen, photo = client.viewpoint
         np.testing.assert_allclose(seen.T_world_camera[:3, 2], ahead, atol=1e-6)
         shown[x, y] = int(photo.rgb[300, photo.width // 2, 0])
         assert client.view.photo.opacity == 0.5
     assert shown[0.0, -1.0] == pytest.approx(128, abs=2), "the middle column looks along -Y"
     assert shown[1.0, 0.0] == pytest.approx(64, abs=2), "and +X is a quarter to the left"
     client.viser_client.camera.position = at[:3, 3] + (0.5, 0.0, 0.0)
-    views.turned(client)
+    views.turn(client)
     assert client.view.photo.opacity == 0.0
     assert not client.view.camera.through_photo
 

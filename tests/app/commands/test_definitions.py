@@ -79,7 +79,7 @@ def test_dropping_puts_an_object_down_on_what_holds_it(session, client, commands
     from diorama_core.scene import edits
 
     lamp = session.scene.object("lamp_1").pose
-    session.commit("lift", edits.move(session.scene, "lamp_1", lamp.moved((0.0, 0.0, 0.3))))
+    session.commit("lift", edits.move(session.scene, "lamp_1", lamp.move((0.0, 0.0, 0.3))))
     client.select(["lamp_1"])
     run(commands, client, "drop")
     np.testing.assert_allclose(session.scene.object("lamp_1").pose.position, lamp.position, atol=1e-6)

@@ -190,7 +190,7 @@ def test_names_are_escaped_and_supporters_are_named_apart() -> None:
 
 def test_an_optimiser_result_leaves_what_was_edited_meanwhile_and_what_is_locked() -> None:
     start = furnished_scene()
-    raised = {o.id: o.pose.moved((0, 0, 1.0)) for o in start.objects}
+    raised = {o.id: o.pose.move((0, 0, 1.0)) for o in start.objects}
     final = edits.place(start, raised)
     current = edits.set_locked(edits.rename(start, "chair_1", "mine"), "lamp_1", True)
     assert set(final_poses(current, start, final)) == {"table_1", "chair_2", "picture_1"}

@@ -27,7 +27,7 @@ def test_a_way_begins_and_ends_at_its_poses_and_turns_evenly() -> None:
 def test_a_moved_object_is_shown_on_its_way_and_where_it_is_in_the_end(session, monkeypatch) -> None:
     before, shown = session.scene, []
     item = before.objects[0]
-    session.commit("move", edits.move(before, item.id, item.pose.moved((0.5, 0.0, 0.0))))
+    session.commit("move", edits.move(before, item.id, item.pose.move((0.5, 0.0, 0.0))))
     monkeypatch.setattr(session.viewport, "preview", lambda poses: shown.append(poses[item.id].position[0]))
     session.ui_thread.ask(lambda: glide(session, before))
     ends = time.monotonic() + 10.0 + DURATION_S
@@ -46,7 +46,7 @@ def test_an_edit_meanwhile_ends_it_and_a_scene_that_grew_does_not_glide(session,
     session.ui_thread.ask(lambda: glide(session, before))
     assert shown == []
     item = before.objects[0]
-    moved = edits.move(before, item.id, item.pose.moved((0.5, 0.0, 0.0)))
+    moved = edits.move(before, item.id, item.pose.move((0.5, 0.0, 0.0)))
     session.commit("move", moved)
 
     def begin_and_edit() -> None:

@@ -36,7 +36,7 @@ def test_curves_are_drawn_less_often_than_the_objects(session, client, monkeypat
     samples = []
     for step in range(20):
         samples.append((0.0625 * step, (("place", 1.0 / (step + 1)),)))
-        scene = edits.place(session.scene, {"chair_1": here.moved((0.01 * step, 0.0, 0.0))})
+        scene = edits.place(session.scene, {"chair_1": here.move((0.01 * step, 0.0, 0.0))})
         optimise._show_step(session, scene, run, samples)
         now[0] += 0.0625
     assert len(set(shown)) == 20
@@ -54,7 +54,7 @@ def _run(session, *given, **more) -> LayoutRun:
 def test_tidying_up_leaves_what_a_person_placed(session, client) -> None:
     edit.set_base_position(client, "chair_1", np.array([0.1, 2.2, 0.5]))  # in the air, in the middle of the table
     chair, other = session.scene.object("chair_1"), session.scene.object("chair_2")
-    session.edit("lift", lambda s: edits.move(s, "chair_2", other.pose.moved((0.0, 0.0, 0.4))), by=client)
+    session.edit("lift", lambda s: edits.move(s, "chair_2", other.pose.move((0.0, 0.0, 0.4))), by=client)
     run = _run(session, session, "feasible")
     assert session.scene.object("chair_1") == chair
     assert session.scene.object("chair_2").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-3)

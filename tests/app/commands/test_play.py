@@ -17,7 +17,7 @@ pytest.importorskip("mujoco", reason="playing needs MuJoCo (extra 'sim')")
 
 def _lifted(session, client) -> None:
     chair = session.scene.object("chair_1")
-    session.edit("lift", lambda s: edits.move(s, "chair_1", chair.pose.moved((0.0, 0.0, 0.4))), by=client)
+    session.edit("lift", lambda s: edits.move(s, "chair_1", chair.pose.move((0.0, 0.0, 0.4))), by=client)
 
 
 def _until(holds) -> None:

@@ -33,7 +33,7 @@ def test_doubts_are_what_the_build_was_not_sure_of() -> None:
 
 def test_what_is_fine_is_not_complained_of() -> None:
     assert check_answer(SCENE, PlainLibrary()).lines == []
-    blocked = edits.move(SCENE, "table_1", SCENE.object("table_1").pose.moved((0.0, 0.0, 0.3)))
+    blocked = edits.move(SCENE, "table_1", SCENE.object("table_1").pose.move((0.0, 0.0, 0.3)))
     lines = check_answer(blocked, PlainLibrary()).lines
     assert any("table_1 floats" in line for line in lines), lines
 

@@ -84,7 +84,7 @@ def test_an_edit_is_seen_and_one_undo_takes_it_back(running: Running, client: Cl
     assert (chair["base_m"], chair["heading_deg"], chair["by_hand"]) == ([-1.2, 1.2, 0.0], 90.0, True)
     session.ui_thread.ask(lambda: session.undo(person))
     assert session.scene == before
-    session.ui_thread.ask(lambda: session.left(person.viser_client))
+    session.ui_thread.ask(lambda: session.leave(person.viser_client))
 
 
 def test_a_stale_edit_is_told_what_changed(client: Client, scene: dict) -> None:
@@ -253,4 +253,4 @@ def test_a_described_room_is_offered_to_whoever_looks_on(running: Running, clien
     assert offered == [(f"Tester builds {made['title']}", "Look")]
     assert went == [made["project"]]
     assert client.describe_project(text="   ").status == 422
-    session.ui_thread.ask(lambda: session.left(person.viser_client))
+    session.ui_thread.ask(lambda: session.leave(person.viser_client))

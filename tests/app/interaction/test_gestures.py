@@ -42,7 +42,7 @@ def settle(session: EditorSession) -> None:
 
 def pick(gestures: Gestures, object_id: str, modifier: pointer.Modifier | None = None, at=pointer.MIDDLE) -> None:
     visitor = gestures._client.viser_client
-    gestures.picked(object_id, pointer.clicked(visitor, object_id, at=at, modifier=modifier))
+    gestures.pick(object_id, pointer.clicked(visitor, object_id, at=at, modifier=modifier))
 
 
 def drag(session: EditorSession, gestures: Gestures, object_id: str, by: tuple, *, phases=("update", "end"), alt=False):
@@ -57,7 +57,7 @@ def send(session: EditorSession, gestures: Gestures, object_id: str, phase, grab
     """One event of a drag."""
     target = node(session, session.viewport.node_name(object_id))
     event = pointer.dragged(gestures._client.viser_client, target, phase, grabbed, hand, modifier=modifier)
-    gestures.dragged(object_id, event)
+    gestures.drag(object_id, event)
     settle(session)
 
 
@@ -106,9 +106,9 @@ def test_a_click_beside_selects_nothing_but_the_echo_of_an_objects_own_click_doe
 ) -> None:
     pick(gestures, "chair_1", at=(0.4, 0.6))
     settle(session)
-    gestures._clicked(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=True)
+    gestures._click(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=True)
     assert client.selection == ("chair_1",)
-    gestures._clicked(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=False)
+    gestures._click(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=False)
     assert client.selection == ()
 
 
@@ -119,7 +119,7 @@ def test_while_a_place_is_asked_for_a_click_puts_the_shape_there(session, client
     settle(session)
     assert client.selection == ()
     eye = np.array([-1.2, 0.5, 2.0])
-    gestures._clicked(eye, np.array([0.0, 0.0, -1.0]), on_object=False)
+    gestures._click(eye, np.array([0.0, 0.0, -1.0]), on_object=False)
     assert len(session.scene.objects) == before + 1
     new = session.scene.objects[-1]
     assert new.shape_id == "chair_c"
@@ -130,8 +130,8 @@ def test_while_a_place_is_asked_for_a_click_puts_the_shape_there(session, client
 
 def test_while_measuring_clicks_are_ends_of_the_tape(session, client, gestures) -> None:
     client.doing = Measuring()
-    gestures._clicked(np.array([-1.0, 0.5, 2.0]), np.array([0.0, 0.0, -1.0]), on_object=False)
-    gestures._clicked(np.array([-1.0, 0.9, 2.0]), np.array([0.0, 0.0, -1.0]), on_object=False)
+    gestures._click(np.array([-1.0, 0.5, 2.0]), np.array([0.0, 0.0, -1.0]), on_object=False)
+    gestures._click(np.array([-1.0, 0.9, 2.0]), np.array([0.0, 0.0, -1.0]), on_object=False)
     assert isinstance(client.doing, Measuring)
     a, b = np.array(client.doing.points)
     np.testing.assert_allclose(b - a, [0.0, 0.4, 0.0], atol=1e-6)
@@ -141,10 +141,10 @@ def test_a_frame_adds_what_it_takes_in(session, client, gestures) -> None:
     camera, eyes = session.scene.camera, client.viser_client.camera
     eyes.wxyz, eyes.position = quaternion_wxyz(camera.T_world_camera[:3, :3]), camera.position
     client.select(["picture_1"])
-    gestures._framed((0.0, 0.0), (1.0, 1.0))
+    gestures._frame((0.0, 0.0), (1.0, 1.0))
     everything = set(client.selection)
     client.select(["picture_1"])
-    gestures._framed((0.0, 0.0), (0.001, 0.001))
+    gestures._frame((0.0, 0.0), (0.001, 0.001))
     assert client.selection == ("picture_1",)
     assert everything > {"picture_1"}
 
@@ -152,8 +152,8 @@ def test_a_frame_adds_what_it_takes_in(session, client, gestures) -> None:
 def test_while_boxes_are_drawn_the_view_means_nothing(session, client, gestures) -> None:
     client.select(["chair_1"])
     client.view.canvas.open(session.photo.rgb, lambda event: None)
-    gestures._framed((0.0, 0.0), (1.0, 1.0))
-    gestures._clicked(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=False)
+    gestures._frame((0.0, 0.0), (1.0, 1.0))
+    gestures._click(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=False)
     drag(session, gestures, "chair_2", (0.3, 0.0, 0.0))
     assert client.selection == ("chair_1",)
     assert session.scene.object("chair_2").pose.position[0] == 1.2

@@ -16,9 +16,9 @@ def handle(client) -> WallHandle:
 def pull(handle: WallHandle, session, plane_id: str, outward_m: float) -> None:
     plane = session.scene.plane(plane_id)
     start = 0.5 * (plane.polygon.min(axis=0) + plane.polygon.max(axis=0))
-    handle._pulled("start", start)
-    handle._pulled("update", start - 0.5 * outward_m * plane.normal)
-    handle._pulled("end", start - outward_m * plane.normal)
+    handle._move("start", start)
+    handle._move("update", start - 0.5 * outward_m * plane.normal)
+    handle._move("end", start - outward_m * plane.normal)
 
 
 def test_a_pull_moves_the_wall_as_one_step(session, client, handle) -> None:

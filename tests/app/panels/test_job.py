@@ -53,11 +53,11 @@ def test_an_optimisation_can_be_paused(session, page: Page, client, running) -> 
     strip = JobStrip(page, client)
     strip.refresh()
     page.send(page.field("·"), "pause", "")
-    assert session.layout_run.paused
+    assert session.layout_run.is_paused
     strip.refresh()
     assert "Resume" in page.html
     page.send(page.field("·"), "pause", "")
-    assert not session.layout_run.paused
+    assert not session.layout_run.is_paused
 
 
 @pytest.mark.parametrize(

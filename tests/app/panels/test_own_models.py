@@ -63,9 +63,9 @@ def test_a_model_deleted_is_restored_by_the_toast(client, library: UserLibrary, 
 
 
 def test_rooms_are_built_of_them_only_where_asked(session, library: UserLibrary, page: Page) -> None:
-    assert "my-case" not in {s.id for s in session.offered.shapes()}
+    assert "my-case" not in {s.id for s in session.offer.shapes()}
     page.act("switch", "in builds")
-    assert "my-case" in {s.id for s in session.offered.shapes()}
+    assert "my-case" in {s.id for s in session.offer.shapes()}
 
 
 def test_only_own_models_are_renamed_or_deleted(client, library: UserLibrary) -> None:

@@ -52,7 +52,7 @@ def test_a_360_degree_photo_is_marked_first_or_built_at_once(session, page: Page
         page.settle()
         assert session.inputs.photo.equirectangular
         assert [b.label for b in session.inputs.boxes] == ["wardrobe"]
-        assert session.unfinished
+        assert session.is_unbuilt
         status = session.jobs.status
         assert (status is not None and status.title == build_job.UNASKED) == at_once
     session.jobs.cancel()
@@ -81,7 +81,7 @@ def empty(session, panel) -> PhotoPanel:
 
 
 def draw(panel: PhotoPanel, page: Page, box: tuple[float, float, float, float]) -> None:
-    panel._boxes.happened(Drawn(box))
+    panel._boxes.handle(Drawn(box))
     page.settle()
 
 
@@ -134,7 +134,7 @@ def test_the_page_asks_for_a_photo_first(client, page, empty) -> None:
 def test_an_uploaded_photo_is_a_project_at_once(session, client, page, empty) -> None:
     page.upload("Upload a photo", "<room>.png", picture())
     assert session.project.folder.name == "room"
-    assert session.unfinished
+    assert session.is_unbuilt
     saved = Project.open(session.project.folder)
     assert saved.photo().width == 64
     assert saved.uploads() == {"photo": picture()}
@@ -160,12 +160,12 @@ def test_boxes_are_drawn_named_reshaped_deleted_undone_and_saved(session, client
     assert client.selected_box == 1, "what was drawn is selected"
     page.change("named", "desk")
     assert labels(session) == ["stool", "desk"]
-    panel._boxes.happened(Selected(0))
+    panel._boxes.handle(Selected(0))
     page.change("named", "beanbag")
     assert labels(session) == ["beanbag", "desk"]
-    panel._boxes.happened(Reshaped(0, (6.0, 6.0, 31.0, 31.0)))
+    panel._boxes.handle(Reshaped(0, (6.0, 6.0, 31.0, 31.0)))
     assert session.inputs.boxes[0].box == (6.0, 6.0, 31.0, 31.0)
-    panel._boxes.happened(Deleted(1))
+    panel._boxes.handle(Deleted(1))
     assert labels(session) == ["beanbag"]
     session.autosave.flush()
     assert Project.open(session.project.folder).load_inputs().boxes == session.inputs.boxes
@@ -182,7 +182,7 @@ def test_boxes_are_drawn_named_reshaped_deleted_undone_and_saved(session, client
 def test_events_of_boxes_that_are_gone_do_nothing(session, client, page, panel) -> None:
     before = session.inputs
     for event in (Deleted(7), Named(-1, "x"), Reshaped(3, (1.0, 1.0, 9.0, 9.0)), Selected(12)):
-        panel._boxes.happened(event)
+        panel._boxes.handle(event)
     assert session.inputs is before
     assert client.selected_box is None
 
@@ -244,7 +244,7 @@ def test_the_photo_is_shown_once_on_the_board_or_in_the_panel(client, page, pane
     page.act("board")
     assert client.view.canvas.is_open
     assert 'class="photo"' not in page.html
-    panel._boxes.happened(Finished())
+    panel._boxes.handle(Finished())
     assert not client.view.canvas.is_open
     assert "Continue marking" in page.html
 

@@ -57,11 +57,11 @@ def labels(session) -> list[str]:
 
 
 def test_a_click_marks_what_is_there_and_selects_it(session, client: Client, marking: PhotoBoxes) -> None:
-    marking.happened(Clicked(100.0, 300.0))
+    marking.handle(Clicked(100.0, 300.0))
     session.ui_thread.wait()
     assert [(b.box, b.label) for b in session.inputs.boxes] == [(CHAIR.box, "chair")]
     assert client.selected_box == 0
-    marking.happened(Named(0, "stool"))
+    marking.handle(Named(0, "stool"))
     assert labels(session) == ["stool"]
     session.undo(client)
     session.undo(client)
@@ -71,7 +71,7 @@ def test_a_click_marks_what_is_there_and_selects_it(session, client: Client, mar
 def test_a_drawn_box_gets_the_kind_that_is_recognised_and_is_selected(
     session, client: Client, marking: PhotoBoxes
 ) -> None:
-    marking.happened(Drawn((10.0, 20.0, 90.0, 120.0)))
+    marking.handle(Drawn((10.0, 20.0, 90.0, 120.0)))
     session.ui_thread.wait()
     assert labels(session) == ["stool"]
     assert client.selected_box == 0
@@ -82,27 +82,27 @@ def test_a_drawn_box_gets_the_kind_that_is_recognised_and_is_selected(
 def test_a_click_beside_everything_says_so(session, client: Client, marking: PhotoBoxes) -> None:
     said: list[str] = []
     client.toast = lambda message, undo: said.append(message)
-    marking.happened(Clicked(600.0, 470.0))
+    marking.handle(Clicked(600.0, 470.0))
     session.ui_thread.wait()
     assert session.inputs.boxes == ()
     assert said == ["Nothing was recognised there; drag a box around the object."]
 
 
 def test_a_click_on_a_marked_object_selects_its_box(session, client: Client, marking: PhotoBoxes) -> None:
-    marking.happened(Accepted(0, ""))
-    marking.happened(Selected(None))
+    marking.handle(Accepted(0, ""))
+    marking.handle(Selected(None))
     assert client.selected_box is None
-    marking.happened(Clicked(100.0, 300.0))
+    marking.handle(Clicked(100.0, 300.0))
     session.ui_thread.wait()
     assert labels(session) == ["chair"]
     assert client.selected_box == 0
 
 
 def test_proposals_are_accepted_under_another_name_or_dropped(session, client: Client, marking: PhotoBoxes) -> None:
-    marking.happened(Accepted(1, "floor lamp"))
+    marking.handle(Accepted(1, "floor lamp"))
     assert labels(session) == ["floor lamp"]
-    marking.happened(Dismissed(0))
-    marking.happened(Accepted(0, ""))
+    marking.handle(Dismissed(0))
+    marking.handle(Accepted(0, ""))
     assert labels(session) == ["floor lamp"], "none is left to accept"
 
 
@@ -119,10 +119,10 @@ def test_each_photo_is_looked_at_once_whichever_is_shown(
     monkeypatch.setattr("diorama_app.panels.photo_boxes.Suggestions", Counted)
     beside = replace(plain_photo(), name="beside.png")
     session.commit("add", session.scene, further=(FurtherPhoto("beside", Inputs(beside)),))
-    assert marking.proposed(session.inputs) == 2
+    assert marking.proposal_count(session.inputs) == 2
     for _ in range(3):  # at every redraw the card asks for the scene's photo, the canvas for the one that is marked
         assert len(marking.proposals()) == 2
-        assert marking.proposed(session.further_photos[0].inputs) == 2
+        assert marking.proposal_count(session.further_photos[0].inputs) == 2
     assert looked_at == [session.photo.name, "beside.png"]
 
 
@@ -133,11 +133,11 @@ def test_the_list_escapes_names(session) -> None:
 
 
 def test_all_proposals_are_accepted_as_one_undo_step(session, client: Client, marking: PhotoBoxes) -> None:
-    marking.happened(Dismissed(1))
-    assert marking.proposed(session.inputs) == 1
+    marking.handle(Dismissed(1))
+    assert marking.proposal_count(session.inputs) == 1
     marking.accept_all()
     assert labels(session) == ["chair"], "what was dismissed is not accepted"
-    assert marking.proposed(session.inputs) == 0
+    assert marking.proposal_count(session.inputs) == 0
     marking.accept_all()
     session.undo(client)
     assert labels(session) == []
@@ -146,7 +146,7 @@ def test_all_proposals_are_accepted_as_one_undo_step(session, client: Client, ma
 def test_only_sure_proposals_are_built_unseen_and_their_names_stay_guesses(session, marking: PhotoBoxes) -> None:
     (box,) = marking.sure(session.inputs)
     assert (box.box, box.label, box.guessed) == (CHAIR.box, "chair", True)
-    marking.happened(Dismissed(0))
+    marking.handle(Dismissed(0))
     assert marking.sure(session.inputs) == ()
     assert session.inputs.boxes == (), "nothing is marked by it"
 
@@ -154,7 +154,7 @@ def test_only_sure_proposals_are_built_unseen_and_their_names_stay_guesses(sessi
 def test_a_name_stays_a_guess_until_somebody_gives_it(session, client: Client, marking: PhotoBoxes) -> None:
     marking.accept_all()
     assert [b.guessed for b in session.inputs.boxes] == [True, True]
-    marking.happened(Named(0, "stool"))
+    marking.handle(Named(0, "stool"))
     assert [b.guessed for b in session.inputs.boxes] == [False, True]
 
 
@@ -171,9 +171,9 @@ def test_who_marks_something_ends_the_build_that_nobody_asked_for(
 
     session.jobs.start("find", UNASKED, work)
     begun.wait()
-    marking.happened(Dismissed(1))
+    marking.handle(Dismissed(1))
     assert session.jobs.status is not None
-    marking.happened(Accepted(0, ""))
+    marking.handle(Accepted(0, ""))
     assert session.jobs.wait(10.0)
     assert labels(session) == ["chair"]
     session.ui_thread.wait()

@@ -51,7 +51,7 @@ def test_a_box_is_drawn_on_the_board(client, page, panel, asked, monkeypatch) ->
     assert client.view.canvas.is_open
     assert shown == [[BOX]]
     assert "Draw a box around it" in page.html
-    panel._drawn("table_1", Drawn((1.0, 2.0, 30.0, 40.0)))
+    panel._handle("table_1", Drawn((1.0, 2.0, 30.0, 40.0)))
     assert asked == [("redraw_box", "table_1", (1.0, 2.0, 30.0, 40.0))]
     assert not client.view.canvas.is_open
 
@@ -61,7 +61,7 @@ def test_an_outline_is_clicked_and_used(client, page, panel, asked, monkeypatch)
     monkeypatch.setattr(client.view.canvas, "show_mask", masks.append)
     page.act("outline")
     assert "Click the object" in page.html
-    panel._drawn("table_1", Pointed(340.0, 320.0, True))
+    panel._handle("table_1", Pointed(340.0, 320.0, True))
     assert len(masks) == 2
     page.act("use")
     ((name, object_id, outline),) = asked

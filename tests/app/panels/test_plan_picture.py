@@ -19,15 +19,15 @@ def test_a_picture_is_kept_moved_and_removed(session: EditorSession, client: Cli
     client.panels = [below]
     buffer = io.BytesIO()
     Image.new("RGB", (400, 200)).save(buffer, "PNG")
-    below._received("plan.png", buffer.getvalue())
+    below._receive("plan.png", buffer.getvalue())
     until(lambda: load_plan_picture(session.project) is not None)
     _, picture = load_plan_picture(session.project)
     assert (picture.size, picture.at, picture.metres) == ((400, 200), (0.0, 0.0), 0.01)
-    below.placed({"at": [1.0, 2.0], "metres": 0.02})
+    below.place({"at": [1.0, 2.0], "metres": 0.02})
     assert load_plan_picture(session.project)[1].at == (1.0, 2.0)
     with pytest.raises(InputError, match="cannot lie there"):
-        below.placed({"at": [1.0, 2.0], "metres": 1e9})
-    below.placed(None)
+        below.place({"at": [1.0, 2.0], "metres": 1e9})
+    below.place(None)
     assert load_plan_picture(session.project) is None
 
 
@@ -35,6 +35,6 @@ def test_a_file_that_is_no_picture_is_one_line(session: EditorSession, client: C
     below = PicturesBelow(page, client, lambda: [[-2.0, -1.0], [2.0, 1.0]])
     said: list[str] = []
     client.view.notice = lambda message, kind: said.append(message)
-    below._received("plan.txt", b"hello")
+    below._receive("plan.txt", b"hello")
     until(lambda: bool(said))
     assert said[0].startswith("plan.txt is not a whole picture")

@@ -123,13 +123,13 @@ def test_materials_of_the_photo_are_put_on_and_taken_off(session, client, page, 
     worn = tuple(replace(o, photo_materials=(cloth,)) if o.id == "chair_1" else o for o in scene.objects)
     session.commit("build", replace(scene, objects=worn), by=client)
     page.act("materials", "library")
-    assert chair(session).shown_photo_materials == ()
+    assert chair(session).visible_materials == ()
     page.act("materials", "photo")
-    assert chair(session).shown_photo_materials == (cloth,)
+    assert chair(session).visible_materials == (cloth,)
     page.write("Colour", (255, 0, 51))
     assert chair(session).material_source == "library", "paint shows"
     session.undo(client)
-    assert chair(session).shown_photo_materials == (cloth,)
+    assert chair(session).visible_materials == (cloth,)
 
 
 def test_several_objects_are_aligned_and_three_distributed(session, client, page, panel) -> None:

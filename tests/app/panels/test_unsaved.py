@@ -57,7 +57,7 @@ def test_they_can_be_forgotten(session, client, page: Page) -> None:
     page.act("discard")
     assert session.scene is before
     assert "were not saved" not in page.html
-    assert session.autosave.recovery.left_behind(session.project) is None
+    assert session.autosave.recovery.find_unsaved(session.project) is None
 
 
 def test_nothing_is_said_when_everything_was_saved(client, page: Page) -> None:

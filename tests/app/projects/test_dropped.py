@@ -152,4 +152,4 @@ def test_what_is_not_read_is_said() -> None:
         interpret(b"\xff\xfe\xff\x0eS", "a.skp", None)
     with pytest.raises(InputError, match=r"drop.zip holds no photo.*b.md"):
         dropped({"notes.md": b"hello", "b.md": b"hello"})
-    assert json.dumps(Dropped((), tuple("abcdefgh")).unused()) == '"Left out: a, b, c, d, e, f and 2 more"'
+    assert json.dumps(Dropped((), tuple("abcdefgh")).unread()) == '"Left out: a, b, c, d, e, f and 2 more"'

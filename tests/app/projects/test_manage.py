@@ -89,7 +89,7 @@ def test_the_last_deleted_is_the_first_in_the_bin(tmp_path: Path) -> None:
     for name in ("b-2-1001", "a-1003", "c-3-1002"):
         make_project(tmp_path / manage.BIN / name)
     (tmp_path / manage.BIN / "no-project-1004").mkdir()
-    assert [place.name for place in manage.binned_projects(tmp_path)] == ["a-1003", "c-3-1002", "b-2-1001"]
+    assert [place.name for place in manage.projects_in_bin(tmp_path)] == ["a-1003", "c-3-1002", "b-2-1001"]
     assert manage.out_of_bin(tmp_path / manage.BIN / "b-2-1001", tmp_path) == tmp_path / "b-2"
 
 

@@ -140,7 +140,7 @@ def test_a_360_degree_photo_that_was_marked_becomes_a_room_with_its_views(
     picture, boxes = sphere_with_wardrobe(1.4)
     given = decode(Upload(picture, "all.png", boxes=boxes, sphere=True), LimitedProcess())
     session.open_project(begin_project(session.projects_dir, "all.png", given, picture))
-    assert session.unfinished
+    assert session.is_unbuilt
     before = session.scene
     session.commit("add", before, further=(FurtherPhoto("mine", Inputs(plain_photo()), photo_camera()),))
     build(session)

@@ -37,8 +37,8 @@ def test_a_photo_is_added_marked_undone_and_saved(session: EditorSession, client
     take_photo(client, "other side.jpg", Inputs(plain_photo()))
     assert opened == [True]
     assert names(session) == ["other-side"]
-    assert client.marked is session.further_photos[0].inputs
-    client.annotate("draw a box", replace(client.marked, boxes=(BOX,)))
+    assert client.inputs is session.further_photos[0].inputs
+    client.annotate("draw a box", replace(client.inputs, boxes=(BOX,)))
     assert session.further_photos[0].inputs.boxes == (BOX,)
     assert session.scene is scene  # nothing of the scene changed
     assert len(session.inputs.boxes) == 1
@@ -62,7 +62,7 @@ def test_a_photo_is_taken_out_with_its_objects_left(session: EditorSession, clie
     take_out(client, "a")
     assert names(session) == []
     assert len(session.scene.objects) == count
-    assert client.marked is session.inputs
+    assert client.inputs is session.inputs
 
 
 def test_names_are_their_own() -> None:

@@ -15,10 +15,10 @@ def finish(session) -> None:
 
 def test_what_was_found_in_the_photo_is_outlined_once(session, client, monkeypatch) -> None:
     outlines = PhotoOutlines(session)
-    assert outlines.found is None
+    assert outlines.objects is None
     outlines.find(client)
     finish(session)
-    (table,) = outlines.found
+    (table,) = outlines.objects
     assert table.category == "table"
     assert table.mask[320, 340]
     assert not table.mask[50, 50]
@@ -31,7 +31,7 @@ def test_another_photo_is_not_shown_with_the_old_outlines(session, client) -> No
     outlines.find(client)
     finish(session)
     session.photo = replace(session.photo, name="another")
-    assert outlines.found is None
+    assert outlines.objects is None
 
 
 def test_without_a_photo_it_says_what_to_do(session, client) -> None:

@@ -40,14 +40,14 @@ def test_what_a_crash_left_is_offered_to_the_next_session_only(
     monkeypatch.setattr(recovery, "SETTLED_S", -1.0)
     crashed, later = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
     crashed.note(project, renamed())
-    assert crashed.left_behind(project) is None
-    found = later.left_behind(project)
+    assert crashed.find_unsaved(project) is None
+    found = later.find_unsaved(project)
     assert found is not None
     assert found.scene() == renamed()
     assert time.strptime(found.when, "%d %b %H:%M").tm_mon == time.localtime(found.at).tm_mon
     for _ in range(2):  # another page may have been quicker
         found.discard()
-    assert later.left_behind(project) is None
+    assert later.find_unsaved(project) is None
 
 
 def test_what_is_unsaved_of_one_project_is_not_offered_for_another(
@@ -57,8 +57,8 @@ def test_what_is_unsaved_of_one_project_is_not_offered_for_another(
     copy = make_project(tmp_path / "copy")
     Recovery(tmp_path / "unsaved").note(copy, renamed())
     later = Recovery(tmp_path / "unsaved")
-    assert later.left_behind(copy) is not None
-    assert later.left_behind(project) is None, "a project of the same scene"
+    assert later.find_unsaved(copy) is not None
+    assert later.find_unsaved(project) is None, "a project of the same scene"
 
 
 def test_a_note_that_somebody_else_deletes_first_is_gone(
@@ -76,16 +76,16 @@ def test_what_is_saved_is_not_offered(project: Project, tmp_path: Path, monkeypa
     monkeypatch.setattr(recovery, "SETTLED_S", -1.0)
     crashed, later = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
     crashed.note(project, furnished_scene())
-    assert later.left_behind(project) is None, "the project's own file says the same"
+    assert later.find_unsaved(project) is None, "the project's own file says the same"
     crashed.note(project, renamed())
     crashed.forget(project)
-    assert later.left_behind(project) is None
+    assert later.find_unsaved(project) is None
 
 
 def test_the_young_may_still_be_saved_by_somebody_else(project: Project, tmp_path: Path) -> None:
     other, here = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
     other.note(project, renamed())
-    assert here.left_behind(project) is None
+    assert here.find_unsaved(project) is None
 
 
 def test_the_saver_notes_at_once_and_forgets_when_it_has_saved(project: Project, tmp_path: Path) -> None:
@@ -112,7 +112,7 @@ def test_what_cannot_be_saved_is_retained(project: Project, tmp_path: Path, monk
     autosave.stop()
     assert "the disk is full" in told[0]
     assert "stored beside the project" in told[0]
-    found = Recovery(tmp_path / "unsaved").left_behind(project)
+    found = Recovery(tmp_path / "unsaved").find_unsaved(project)
     assert found is not None
     assert found.scene() == renamed()
 
@@ -234,7 +234,7 @@ def test_a_damaged_unsaved_copy_is_not_in_the_way(project: Project, tmp_path: Pa
     damaged.write_bytes(b"\xff\xfe[[[")
     minute_ago = time.time() - 30.0
     os.utime(damaged, (minute_ago, minute_ago))
-    found = here.left_behind(project)
+    found = here.find_unsaved(project)
     assert found is not None
     with pytest.raises(SceneError):
         found.scene()
@@ -250,12 +250,12 @@ def test_no_clock_decides_what_is_newer(project: Project, tmp_path: Path, ahead_
     os.utime(noted, (minute_ago, minute_ago))
     os.utime(project.scene_path, (then, then))
     later.clean_up(project)
-    found = later.left_behind(project)
+    found = later.find_unsaved(project)
     assert found is not None
     assert found.scene() == renamed()
     project.save_scene(edits.rename(furnished_scene(), "chair_1", "stool"))
     os.utime(project.scene_path, (then, then))
-    assert later.left_behind(project) is None, "something newer is saved"
+    assert later.find_unsaved(project) is None, "something newer is saved"
     later.clean_up(project)
     assert not noted.exists()
 
@@ -277,7 +277,7 @@ def test_notes_of_earlier_programs_are_found(project: Project, tmp_path: Path) -
     former = noted.rename(noted.with_name("-".join(noted.stem.split("-")[:2]) + ".json"))
     minute_ago = time.time() - 30.0
     os.utime(former, (minute_ago, minute_ago))
-    found = here.left_behind(project)
+    found = here.find_unsaved(project)
     assert found is not None
     assert found.scene() == renamed()
 

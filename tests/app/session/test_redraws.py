@@ -94,7 +94,7 @@ def clock(monkeypatch):
 
 
 def report(reports, status: JobStatus) -> None:
-    redraws.JobReports.changed(reports, status)
+    redraws.JobReports.update(reports, status)
     reports.wait()
 
 
@@ -116,7 +116,7 @@ def test_the_start_and_a_cancel_are_told_at_once(reports, said, clock) -> None:
 
 def test_the_end_is_told_with_how_it_ended(reports, said) -> None:
     outcome = Outcome("build", error="the photo is too dark")
-    reports.ended(outcome)
+    reports.end(outcome)
     reports.wait()
     assert said == [outcome]
 

@@ -59,12 +59,12 @@ def test_the_whole_room_is_seen_and_nothing_is_selected(session: EditorSession, 
 
 def test_clicks_and_drags_are_told_to_who_listens(session: EditorSession, client: Client) -> None:
     click = pointer.clicked(client.viser_client, "chair_1")
-    session.view._picked("chair_1", click)  # nobody listens yet
+    session.view._pick("chair_1", click)  # nobody listens yet
     told: list = []
     session.view.on_pick = session.view.on_drag = lambda object_id, event: told.append((object_id, event))
     drag = pointer.dragged(client.viser_client, "chair_1", "start", (0, 0, 0), (0, 0, 0))
-    session.view._picked("chair_1", click)
-    session.view._dragged("chair_1", drag)
+    session.view._pick("chair_1", click)
+    session.view._drag("chair_1", drag)
     assert told == [("chair_1", click), ("chair_1", drag)]
 
 

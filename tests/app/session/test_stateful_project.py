@@ -136,7 +136,7 @@ class ProjectMachine(RuleBasedStateMachine):
         later = Recovery(self.place / "unsaved")
         with self.faults.injected(), pytest.MonkeyPatch.context() as patch:
             patch.setattr(recovery, "SETTLED_S", -1.0)
-            found = later.left_behind(self.project)
+            found = later.find_unsaved(self.project)
             scene = self.project.load_scene() if found is None else found.scene()
             assert _label(scene) in (self.acknowledged, self.pending)
             self.acknowledged = self.pending = _label(scene)

@@ -45,7 +45,7 @@ def test_what_the_other_changed_since_stays(session: EditorSession, client: Clie
 
 def test_what_somebody_left_behind_is_anybodys(session: EditorSession, client: Client, other: Client) -> None:
     edit.set_colour(other, ["lamp_1"], BLUE)
-    session.left(other.viser_client)
+    session.leave(other.viser_client)
     session.undo(client)
     assert session.scene.object("lamp_1").colour is None
 

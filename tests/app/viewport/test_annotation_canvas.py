@@ -72,11 +72,11 @@ def canvas(server):
 
 def test_it_reports_only_while_it_is_open(canvas: AnnotationCanvas) -> None:
     heard: list[Event] = []
-    canvas._received(Action("done", "null", False))
+    canvas._receive(Action("done", "null", False))
     canvas.open(plain_photo().rgb, heard.append)
-    canvas._received(Action("done", "null", False))
+    canvas._receive(Action("done", "null", False))
     canvas.close()
-    canvas._received(Action("done", "null", False))
+    canvas._receive(Action("done", "null", False))
     assert heard == [Finished()]
 
 

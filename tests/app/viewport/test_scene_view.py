@@ -76,7 +76,7 @@ def test_only_what_differs_is_sent(server, viewport, monkeypatch) -> None:
     monkeypatch.setattr(server.scene, "add_mesh_simple", lambda *given, **more: pytest.fail("drew a plane again"))
     before = nodes(server)
     viewport.show(edits.rename(SCENE, "chair_1", "throne"), {})
-    moved = edits.move(SCENE, "chair_1", SCENE.object("chair_1").pose.moved((0.1, 0, 0)))
+    moved = edits.move(SCENE, "chair_1", SCENE.object("chair_1").pose.move((0.1, 0, 0)))
     viewport.show(moved, {})
     viewport.show(edits.set_hidden(moved, "chair_1", True), {})
     assert nodes(server) == before
@@ -125,7 +125,7 @@ def test_a_preview_is_taken_back_by_the_next_drawing(server, viewport) -> None:
 def test_a_preview_sends_what_can_be_seen_to_move(server, viewport) -> None:
     item = SCENE.object("chair_1")
     frame = handle(server, viewport.node_name(item.id))
-    steps = [item.pose.moved((0.00005 * step, 0.0, 0.0)) for step in range(1, 7)]
+    steps = [item.pose.move((0.00005 * step, 0.0, 0.0)) for step in range(1, 7)]
     sent = []
     for pose in steps:
         viewport.preview({item.id: pose})

@@ -113,7 +113,7 @@ def test_half_characters_of_a_page_are_replaced_where_they_enter() -> None:
     said = json.dumps([{"number": 1, "do": "rename", "arg": json.dumps(["", "caf\udce9"]), "add": False}])
     ((_, action),) = _read_actions(said)
     assert action.pair == ("", "caf\ufffd")
-    assert action.parsed == ["", "caf\ufffd"]
+    assert action.value == ["", "caf\ufffd"]
     for odd in ("[" * 100_000, '[{"number": 1e999, "do": "a", "arg": "", "add": 0}]', "{", "7"):
         assert _read_actions(odd) == []
         assert Action("do", odd, False).pair == ("", "")

@@ -36,7 +36,7 @@ def test_photos_that_were_built_both_ways_are_compared():
 
 
 def test_rooms_are_compared_where_there_are_any():
-    rooms = tuple(CaseResult(f"room {k}", SceneScores.failed(4), 1.0, 1.0) for k in range(3))
+    rooms = tuple(CaseResult(f"room {k}", SceneScores.failure(4), 1.0, 1.0) for k in range(3))
     found = changes(replace(BEFORE, rooms=rooms), replace(AFTER, rooms=rooms))
     assert found["rooms, own Acc"].by == 0.0
 

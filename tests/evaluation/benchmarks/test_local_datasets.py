@@ -152,7 +152,7 @@ def test_models_are_aligned_in_the_world_of_the_scan():
     assert alignments([model], scene, frame) == (("chair", True),)
     assert alignments([model, model], scene, frame) == (("chair", True), ("chair", False))
     shifted = transform(Scene(camera=frame.camera, objects=(item,)), elsewhere)
-    far = SceneObject("a", "chair", "chair", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose.moved([0.3, 0, 0]))
+    far = SceneObject("a", "chair", "chair", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose.move([0.3, 0, 0]))
     assert alignments([model], Scene(camera=shifted.camera, objects=(far,)), frame) == (("chair", False),)
     table = SceneObject("a", "table", "table", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose)
     assert alignments([model], Scene(camera=shifted.camera, objects=(table,)), frame) == (("chair", False),)

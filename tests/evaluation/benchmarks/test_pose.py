@@ -80,8 +80,8 @@ def test_depth_is_true_noisy_or_absent(view) -> None:
 
 def test_every_solver_poses_the_same_objects(view, library, solvers) -> None:
     seen = predict(view.inputs, library)
-    given = solvers.given(view, seen)
-    assert len(given) == len(view.asked) > 2
+    given = solvers.true_shapes(view, seen)
+    assert len(given) == len(view.indices) > 2
     scenes = solvers.scenes(seen, given)
     assert set(scenes) == {OURS, *BASELINES}
     for scene in scenes.values():
@@ -89,17 +89,17 @@ def test_every_solver_poses_the_same_objects(view, library, solvers) -> None:
         assert all(true[o.id] == o.shape_id for o in scene.objects)
     ours = pose_scores(view, scenes[OURS], library)
     assert ours.own.t_acc > 0.7
-    assert ours.asked == len(view.asked)
+    assert ours.asked == len(view.indices)
 
 
 def test_the_truth_is_right_and_nothing_is_wrong(view, library) -> None:
     best = pose_scores(view, without_unasked(view), library)
     assert (best.pairs.acc, best.every.acc, best.own.acc, best.relation) == (1, 1, 1, 1)
-    assert pose_scores(view, None, library) == PoseScores.failed(len(view.asked))
+    assert pose_scores(view, None, library) == PoseScores.failure(len(view.indices))
 
 
 def test_a_column_for_each_reading(view, library) -> None:
-    right, wrong = pose_scores(view, without_unasked(view), library), PoseScores.failed(len(view.asked))
+    right, wrong = pose_scores(view, without_unasked(view), library), PoseScores.failure(len(view.indices))
     table = comparison_table(
         "t", (("a", (right, wrong)), ("b", (wrong, wrong))), {"ZSP": (0.1, 0.2, 0.3, 0.4, 5.0, 0.6)}
     )
@@ -113,11 +113,11 @@ def test_a_room_that_fails_counts_for_every_solver(view, library, solvers, monke
     monkeypatch.setattr(pose_bench, "predict", lambda inputs, library: 1 / 0)
     tally = pose_bench._Tally()
     pose_bench._one_room(view, solvers, tally, pose_bench.Progress(), "room")
-    bench = tally.finished(0)
+    bench = tally.result(0)
     assert [(d, s) for d, s, _ in bench.compared] == list(CONDITIONS)
     for _, _, named in bench.compared:
         assert [len(rows) for _, rows in named] == [1] * (1 + len(BASELINES))
-        assert all(rows[0].pairs.acc == 0 and rows[0].asked == len(view.asked) for _, rows in named)
+        assert all(rows[0].pairs.acc == 0 and rows[0].asked == len(view.indices) for _, rows in named)
     assert len(bench.tables()) == len(CONDITIONS) + 6
     assert replace(bench, seed=1).to_json()["seed"] == 1
     rows = {name for name, _ in bench.ablation}
@@ -141,4 +141,4 @@ def test_groups_are_counted_after_the_papers_layout_too(view, library) -> None:
     assert ablation["true graph"] != [] != ablation["feasible, true architecture"]
     groups: dict[str, list[tuple[float, ...]]] = {}
     pose_bench._count_groups(view, arranged[pose_bench.PAPER_LAYOUT], library, groups)
-    assert sum(len(rows) for name, rows in groups.items() if name in ("household", "furniture")) == len(view.asked)
+    assert sum(len(rows) for name, rows in groups.items() if name in ("household", "furniture")) == len(view.indices)

@@ -36,13 +36,13 @@ def view() -> TruthView:
 @pytest.mark.parametrize("name", ALONE)
 def test_each_half_finds_shapes_of_the_kind_for_every_object(name: str, view: TruthView) -> None:
     found = _alone(name, LIBRARY, view)
-    for index in view.asked:
+    for index in view.indices:
         item = view.scene.objects[index]
         assert item.category in {LIBRARY.shape(s).category for s in found[item.id]}
 
 
 def test_the_nearest_of_five_counts_and_nothing_is_far(view: TruthView) -> None:
-    index = view.asked[0]
+    index = view.indices[0]
     true = view.scene.objects[index].shape_id
     others = [s.id for s in LIBRARY.shapes() if s.id != true][:5]
     assert _nearest(view, index, (*others[:4], true), LIBRARY) == pytest.approx(0.0, abs=1e-6)
@@ -83,7 +83,7 @@ def test_each_network_gets_the_publications_rows(
     assert list(stages) == ["CLIP-H", "OS-H", "DD-T", "DD-V", "DD-H"]
     for stage in stages.values():
         found = _ranks(stage(LIBRARY), view)
-        assert all(len(found[view.scene.objects[index].id]) >= 5 for index in view.asked)
+        assert all(len(found[view.scene.objects[index].id]) >= 5 for index in view.indices)
     item = RetrievalResult(
         "r",
         "a",

@@ -61,9 +61,9 @@ def test_what_is_wrong_lowers_its_own_measure(room: Scene) -> None:
     middle = np.mean([p.centre for p in room.architecture.by_role("floor")], axis=0)
     free = replace(sofa.pose, position=np.array([*middle[:2], sofa.pose.position[2]]))
     assert measure(ASKED, edits.move(room, "sofa_1", free), library).room_relations == (0, 1)
-    floating = edits.move(room, "sofa_1", sofa.pose.moved((0.0, 0.0, 0.3)))
+    floating = edits.move(room, "sofa_1", sofa.pose.move((0.0, 0.0, 0.3)))
     assert measure(ASKED, floating, library).supported[0] < len(room.objects)
-    out = measure(ASKED, edits.move(room, "sofa_1", sofa.pose.moved((9.0, 0.0, 0.0))), library)
+    out = measure(ASKED, edits.move(room, "sofa_1", sofa.pose.move((9.0, 0.0, 0.0))), library)
     assert out.outside[0] == 1
     table = room.object("coffee_table_1").pose.position
     into = replace(sofa.pose, position=np.array([*table[:2], sofa.pose.position[2]]))

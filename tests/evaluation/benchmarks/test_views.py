@@ -54,7 +54,7 @@ def pictures() -> tuple[RoomView, ...]:
 
 def test_pictures_show_one_room_from_different_places() -> None:
     first, second = pictures()
-    assert set(first.truth.asked) & set(second.truth.asked)
+    assert set(first.truth.indices) & set(second.truth.indices)
     assert ((first.camera.position - second.camera.position) ** 2).sum() > 0.04
 
 
@@ -65,7 +65,7 @@ MARKED = 2
 def marked(case: Case, library: ShapeLibrary, count: int) -> tuple[RoomView, ...]:
     """The pictures of a case in which few things are marked."""
     assert (case, count) == (recipe(1, 1, SEED)[0], 2)
-    first, further = (view.truth.asked for view in pictures())
+    first, further = (view.truth.indices for view in pictures())
     chosen = sorted(first, key=lambda k: k not in further)[:MARKED]
 
     def few(view: RoomView) -> RoomView:
@@ -82,8 +82,8 @@ def marked(case: Case, library: ShapeLibrary, count: int) -> tuple[RoomView, ...
 class FewMarked(SphereTruth):
     """A 360 degree photo in which few objects are marked."""
 
-    def marked(self, objects: Sequence[SceneObject]) -> dict[int, LabelledBox]:
-        return dict(list(super().marked(objects).items())[:MARKED])
+    def boxes(self, objects: Sequence[SceneObject]) -> dict[int, LabelledBox]:
+        return dict(list(super().boxes(objects).items())[:MARKED])
 
 
 def marked_sphere(studio: Studio, T_world_sphere: Float[np.ndarray, "4 4"]) -> FewMarked:

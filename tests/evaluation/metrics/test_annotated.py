@@ -102,7 +102,7 @@ def test_a_scene_that_is_the_photo_agrees_wholly() -> None:
 
 
 def test_what_moved_agrees_less_and_what_is_missing_not_at_all() -> None:
-    moved = edits.move(SCENE, "table", SCENE.object("table").pose.moved((0.5, 0, 0)))
+    moved = edits.move(SCENE, "table", SCENE.object("table").pose.move((0.5, 0, 0)))
     (row,) = agreement(SHOT.objects, SHOT.geometry, SCENE, moved, PRIMITIVES)
     assert row.final_iou < row.shape_iou - 0.2
     empty = Scene(SHOT.camera)

@@ -44,7 +44,7 @@ def test_memory_of_work_is_what_it_holds():
 
 def test_stages_are_told_apart_by_their_progress():
     clock = StageClock(("pose", "layout"))
-    progress = clock.watched(Progress())
+    progress = clock.watch(Progress())
     progress.report(0.0, "pose…")
     _work(0.05)
     progress.report(0.5, "chair 3")
@@ -67,7 +67,7 @@ def test_a_stopped_run_stops_its_stages():
     token = CancelToken()
     token.cancel()
     with pytest.raises(Cancelled):
-        StageClock(("pose",)).watched(Progress(token=token)).report(0.0, "pose…")
+        StageClock(("pose",)).watch(Progress(token=token)).report(0.0, "pose…")
 
 
 def test_what_became_slower_is_named():

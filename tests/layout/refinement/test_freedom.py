@@ -47,7 +47,7 @@ def test_what_stands_free_moves_turns_and_grows_on_the_floor(room: Room) -> None
     box = room.put("box_24", (0.5, 0.5, 0.0))
     height = room.library.shape("box_24").size_m[2]
     scene = room.scene(camera=looking_down())
-    scene = edits.place(scene, {box: scene.object(box).pose.moved((0.0, 0.0, height / 2))})
+    scene = edits.place(scene, {box: scene.object(box).pose.move((0.0, 0.0, height / 2))})
     free, problem, i = of(scene, room, box)
     assert len(free.directions) == 2
     assert len(free.extents) == 3
@@ -63,7 +63,7 @@ def test_what_stands_at_a_wall_moves_along_it_and_stays_against_it(room: Room) -
     problem = build_problem(scene, room.library)
     half = problem.shape_size[0][0] / 2
     item = scene.objects[0]
-    at_wall = item.pose.moved((0.0, 2.5 - half - item.pose.position[1], 0.0))
+    at_wall = item.pose.move((0.0, 2.5 - half - item.pose.position[1], 0.0))
     scene = edits.place(scene, {shelf: at_wall})
     free, problem, i = of(scene, room, shelf)
     assert len(free.directions) == 1
@@ -169,9 +169,9 @@ def _at_distance(times: float, precision: Precision) -> Pose:
 
 def test_only_what_was_measured_is_known_to_have_been_pushed_away() -> None:
     prior = PosePrior(EYE, OBSERVED, MEASURED)
-    assert not prior.was_pushed_away(OBSERVED.moved((0.01, 0.0, 0.0)).position)
-    assert prior.was_pushed_away(OBSERVED.moved((0.1, 0.0, 0.0)).position)
-    assert not PosePrior(EYE, OBSERVED, REASONED).was_pushed_away(OBSERVED.moved((0.1, 0.0, 0.0)).position)
+    assert not prior.was_pushed_away(OBSERVED.move((0.01, 0.0, 0.0)).position)
+    assert prior.was_pushed_away(OBSERVED.move((0.1, 0.0, 0.0)).position)
+    assert not PosePrior(EYE, OBSERVED, REASONED).was_pushed_away(OBSERVED.move((0.1, 0.0, 0.0)).position)
 
 
 def settled(room: Room) -> Problem:

@@ -52,7 +52,7 @@ def test_what_covers_its_mask_stays_and_what_does_not_comes_nearer(room: Room) -
     room.put("box_24", (-0.6, 0.4, 0.15), id="right")
     room.put("box_24", (0.6, 0.4, 0.15), id="wrong")
     scene = settled(room)
-    aside = edits.place(scene, {"wrong": scene.object("wrong").pose.moved((0.1, 0.0, 0.0))})
+    aside = edits.place(scene, {"wrong": scene.object("wrong").pose.move((0.1, 0.0, 0.0))})
     for trust in (1.0, 0.4):
         after = found(room, aside, masks_of(scene, room), trust)
         np.testing.assert_allclose(after["right"], scene.object("right").pose.position, atol=0.01)
@@ -66,7 +66,7 @@ def test_what_is_hidden_by_what_moves_counts_too(room: Room) -> None:
     scene = settled(room)
     masks = masks_of(scene, room)
     empty = np.zeros_like(masks["before"])
-    aside = edits.place(scene, {"before": scene.object("before").pose.moved((0.2, 0.0, 0.0))})
+    aside = edits.place(scene, {"before": scene.object("before").pose.move((0.2, 0.0, 0.0))})
     # Nothing is known of the nearer one but what it hides of the other.
     assert found(room, aside, {**masks, "before": empty})["before"][0] == aside.object("before").pose.position[0]
     few = empty.copy()

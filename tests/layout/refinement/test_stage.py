@@ -49,7 +49,7 @@ def test_a_moved_box_returns_to_where_its_mask_is(room: Room) -> None:
     scene = room.scene(camera=looking_down())
     settled, _ = FeasibleRecipe(LIBRARY).optimise(scene, Progress())
     pose = settled.object("box").pose
-    aside = edits.place(settled, {"box": pose.moved((0.12, 0.0, 0.0))})
+    aside = edits.place(settled, {"box": pose.move((0.12, 0.0, 0.0))})
     back = refined(aside, scene, seen_objects(settled, LIBRARY)).object("box").pose
     assert abs(back.position[0] - pose.position[0]) < 0.04
 
@@ -60,7 +60,7 @@ def test_what_is_locked_or_has_no_mask_stays(room: Room) -> None:
     scene = room.scene(camera=looking_down())
     settled, _ = FeasibleRecipe(LIBRARY).optimise(scene, Progress())
     objects = seen_objects(settled, LIBRARY)[:2]
-    aside = edits.place(settled, {o.id: o.pose.moved((0.1, 0.0, 0.0)) for o in settled.objects})
+    aside = edits.place(settled, {o.id: o.pose.move((0.1, 0.0, 0.0)) for o in settled.objects})
     after = refined(aside, scene, objects)
     moved = {o.id: o.pose.position[0] - aside.object(o.id).pose.position[0] for o in after.objects}
     assert moved["box 0"] == moved["box 2"] == 0.0
