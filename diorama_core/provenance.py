@@ -57,7 +57,7 @@ class CameraSource:
     """Whether a person's pitch and roll replaced those of `attitude`."""
 
     @classmethod
-    def known(cls) -> CameraSource:
+    def exact(cls) -> CameraSource:
         """The source of a camera that is known."""
         return cls(FocalSource.GIVEN, AttitudeSource.GIVEN, HeadingSource.GIVEN)
 

@@ -85,7 +85,7 @@ class Shot:
     def estimate(self) -> CameraEstimate:
         """What a perfect camera stage would have found."""
         best = CameraHypothesis(self.camera.intrinsics, self.camera.T_world_camera[:3, :3], 1.0)
-        return CameraEstimate((best,), 1.0, CameraSource.known(), float(self.camera.position[2]))
+        return CameraEstimate((best,), 1.0, CameraSource.exact(), float(self.camera.position[2]))
 
 
 def shoot(camera: Camera, planes, cuboids=(), categories=(), noise: float = 0.0, seed: int = 0) -> Shot:

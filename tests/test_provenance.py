@@ -41,11 +41,11 @@ def test_sources_survive_a_project_file(source: object) -> None:
 
 
 def test_a_known_camera_is_given_in_every_respect() -> None:
-    source = CameraSource.known()
+    source = CameraSource.exact()
     assert source == CameraSource(FocalSource.GIVEN, AttitudeSource.GIVEN, HeadingSource.GIVEN)
     assert not source.attitude_corrected
 
 
 def test_a_source_cannot_be_changed() -> None:
     with pytest.raises(AttributeError):
-        CameraSource.known().few_lines = True
+        CameraSource.exact().few_lines = True

@@ -24,6 +24,16 @@ PREPOSITIONS = re.compile(
 MAX_PREPOSITIONS = 76
 """Functions of core and app whose names begin with one, constructors `of` and handlers `on_*` mostly; it may only fall.
 Conversions (`with_`, `without_`, `to_`, `from_`, `as_`) are usual."""
+PARTICIPLES = re.compile(
+    r"def _*((?!(?:speed|need|feed|seed|bed|embed|proceed|exceed|red)(?:_|\())[a-z]{2,}ed|begun|bent|bound|bought"
+    r"|brought|built|burnt|caught|chosen|done|drawn|dealt|driven|fallen|felt|found|forgotten|frozen|given|gone|grown|held"
+    r"|hidden|hung|kept|known|laid|learnt|led|left|lent|lit|lost|made|meant|met|overridden|paid|relit|said|seen|sent"
+    r"|shown|shrunk|shut|slid|sold|spent|spoken|stood|stuck|sunk|taken|taught|thought|thrown|told|torn|undone|understood"
+    r"|won|worn|written)(?=_|\()"
+)
+MAX_PARTICIPLES = 462
+"""Functions of core and app, without furniture, whose names begin with one; it may only fall. A value is a noun, an
+action a verb, and a predicate begins with `is_`; some nouns have one (`signed_area`, `cached_picture`)."""
 MANY_PARAMETERS = 4
 EXPLAINED_ELSEWHERE = ("diorama_core/library/furniture/", "diorama_app/agents/tools.py", "diorama_app/http_api/")
 """Designs' parameters are the words of their tables; those of HTTP and MCP have descriptions in their annotations."""
@@ -74,6 +84,12 @@ def test_docstrings_begin_with_their_subject() -> None:
 def test_functions_are_named_for_what_they_return_or_do() -> None:
     found = [path for path in modules("diorama_core", "diorama_app") for _ in PREPOSITIONS.findall(path.read_text())]
     assert len(found) <= MAX_PREPOSITIONS, "a noun for a value, a verb for an action (docs/style.md)"
+
+
+def test_functions_do_not_begin_with_a_participle() -> None:
+    paths = [p for p in modules("diorama_core", "diorama_app") if "/furniture/" not in p.as_posix()]
+    matches = [(p, word) for p in paths for word in PARTICIPLES.findall(p.read_text("utf-8"))]
+    assert len(matches) <= MAX_PARTICIPLES, "a noun for a value, a verb for an action (docs/style.md)"
 
 
 def test_functions_of_many_parameters_explain_them() -> None:

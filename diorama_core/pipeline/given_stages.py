@@ -30,7 +30,7 @@ from diorama_core.scene.types import Architecture, Camera, Scene
 def given_camera(camera: Camera) -> CameraEstimate:
     """A camera that is known, as the stage that finds it would say it."""
     reading = CameraHypothesis(camera.intrinsics, camera.T_world_camera[:3, :3], 1.0)
-    return CameraEstimate((reading,), 1.0, CameraSource.known(), height_m=float(camera.position[2]))
+    return CameraEstimate((reading,), 1.0, CameraSource.exact(), height_m=float(camera.position[2]))
 
 
 @dataclass(frozen=True, eq=False)

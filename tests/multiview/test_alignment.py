@@ -18,7 +18,7 @@ def _readings(G: np.ndarray, scale: float, t: np.ndarray) -> list[PhotoReading]:
         T = np.eye(4)
         T[:3, :3], T[:3, 3] = G @ camera.T_world_camera[:3, :3], scale * G @ camera.position + t
         reading = CameraHypothesis(K, camera.T_world_camera[:3, :3], 1.0)
-        estimate = CameraEstimate((reading,), 1.0, CameraSource.known())
+        estimate = CameraEstimate((reading,), 1.0, CameraSource.exact())
         found.append(PhotoReading(Camera(K, T), estimate, photo(camera)[0].boxes.observations))
     return found
 

@@ -35,7 +35,7 @@ def read_alone(camera: Camera, focal: float = 1.0) -> CameraEstimate:
     """What a photo tells by itself: gravity, the room's axes up to quarter turns, and a focal length."""
     k = replace(camera.intrinsics, fx=focal * camera.intrinsics.fx, fy=focal * camera.intrinsics.fy)
     R = np.linalg.inv(photo_world(camera))[:3, :3] @ camera.T_world_camera[:3, :3]
-    return CameraEstimate((CameraHypothesis(k, R, 1.0),), 1.0, CameraSource.known())
+    return CameraEstimate((CameraHypothesis(k, R, 1.0),), 1.0, CameraSource.exact())
 
 
 @pytest.mark.parametrize(("number", "focal"), [(0, 1.0), (1, 1.04), (2, 1.0)])

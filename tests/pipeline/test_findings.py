@@ -152,7 +152,7 @@ def test_a_camera_over_a_table_does_not_know_its_height() -> None:
 
 
 def test_what_is_given_is_said_to_be() -> None:
-    assert camera(CameraSource.known()) == "focal length given; tilt and room directions given"
+    assert camera(CameraSource.exact()) == "focal length given; tilt and room directions given"
     assert objects(ScaleSource.GIVEN) == "objects given"
     assert room(RoomSource(RoomMethod.GIVEN)) == "room given"
     assert graph_sentence(SceneGraph((), (), source=GraphSource(GraphMethod.GIVEN))) == "relations given"

@@ -91,7 +91,7 @@ def relations_of(view: TruthView, *, with_depth: bool, graph: GraphStage | None 
     camera = view.camera
     reading = CameraHypothesis(camera.intrinsics, camera.T_world_camera[:3, :3], 1.0)
     height = float(camera.position[2]) if with_depth else None
-    estimate = CameraEstimate((reading,), 1.0, CameraSource.known(), height)
+    estimate = CameraEstimate((reading,), 1.0, CameraSource.exact(), height)
     quiet = Progress()
     objects = EmbeddedMasks().segment(inputs, quiet)
     stage = MeasuredGeometry() if with_depth else SingleViewMetrology()

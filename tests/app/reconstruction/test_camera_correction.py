@@ -38,7 +38,7 @@ class Found:
     def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
         R = yaw_rotation(0.2) @ photo_camera().T_world_camera[:3, :3]
         reading = CameraHypothesis(Intrinsics.from_fov(640, 480, 1.0), R, 0.5)
-        return CameraEstimate((reading, replace(reading, score=0.1)), 0.4, CameraSource.known())
+        return CameraEstimate((reading, replace(reading, score=0.1)), 0.4, CameraSource.exact())
 
 
 def test_what_is_said_of_the_tilt_leaves_heading_and_focal_length() -> None:
@@ -50,7 +50,7 @@ def test_what_is_said_of_the_tilt_leaves_heading_and_focal_length() -> None:
     assert after.intrinsics == before.intrinsics
     forward = [R[:2, 2] / np.linalg.norm(R[:2, 2]) for R in (before.R_world_camera, after.R_world_camera)]
     np.testing.assert_allclose(*forward, atol=1e-9)
-    assert estimate.source == replace(CameraSource.known(), attitude_corrected=True)
+    assert estimate.source == replace(CameraSource.exact(), attitude_corrected=True)
 
 
 @pytest.mark.parametrize(("tilt", "roll"), [(85.0, 0.0), (0.0, -50.0)])

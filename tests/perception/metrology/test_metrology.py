@@ -74,7 +74,7 @@ def measure(objects: tuple[DetectedObject, ...], *rotations: np.ndarray) -> Obje
     scores = np.linspace(0.8, 0.79, len(rotations))
     hypotheses = tuple(CameraHypothesis(K, R, float(s)) for R, s in zip(rotations, scores, strict=True))
     return SingleViewMetrology().measure(
-        inputs, CameraEstimate(hypotheses, 0.9, CameraSource.known()), objects, Progress()
+        inputs, CameraEstimate(hypotheses, 0.9, CameraSource.exact()), objects, Progress()
     )
 
 

@@ -58,7 +58,7 @@ def shot(items: tuple[RequestedObject, ...], height_m: float) -> tuple[np.ndarra
 
 def measured(objects: tuple[DetectedObject, ...], depth: KnownDepth | None) -> ObjectGeometry:
     inputs = Inputs(Photo(np.zeros((K.height, K.width, 3), np.uint8), "synthetic", (K.width, K.height)))
-    camera = CameraEstimate((CameraHypothesis(K, R, 0.8),), 0.9, CameraSource.known())
+    camera = CameraEstimate((CameraHypothesis(K, R, 0.8),), 0.9, CameraSource.exact())
     return SingleViewMetrology(depth=depth).measure(inputs, camera, objects, Progress())
 
 
