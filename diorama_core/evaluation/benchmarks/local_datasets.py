@@ -79,7 +79,7 @@ class LocalResult:
     image_iou: float
     relation: float | None
     """Share of annotated supporters that were found; None where not annotated."""
-    alignments: tuple[tuple[str, bool], ...]
+    aligned: tuple[tuple[str, bool], ...]
     """For every aligned model its category and whether an object of it stands there (20 cm, 20 degrees, 20 %)."""
     structure: float
     supported: float

@@ -147,7 +147,7 @@ class SystemBench:
     results: tuple[tuple[str, tuple[CaseResult, ...]], ...]
     """(what was given, one result per case)."""
     left_out: tuple[LeftOut, ...] = ()
-    substitute: tuple[str, ...] = ()
+    substituted: tuple[str, ...] = ()
     """The ways in which the truth took the place of something."""
 
     def tables(self) -> tuple[Table, ...]:

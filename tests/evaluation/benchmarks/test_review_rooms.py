@@ -30,7 +30,7 @@ def room() -> KnownRoom:
     pose = truth.object("chair_1").pose
     found = edits.move(truth, "chair_1", replace(pose, R_world_object=yaw_rotation(np.pi) @ pose.R_world_object))
     found = replace(believed(rescale(found, 1.15), BELIEFS), scale_sigma=0.1)
-    view: Any = SimpleNamespace(scene=truth, camera=truth.camera, asked=tuple(range(len(truth.objects))))
+    view: Any = SimpleNamespace(scene=truth, camera=truth.camera, indices=tuple(range(len(truth.objects))))
     return KnownRoom(found, view, {o.id: o for o in truth.objects}, PlainLibrary(), PlainLibrary())
 
 
