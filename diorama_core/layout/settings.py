@@ -60,7 +60,8 @@ class LayoutSettings:
     max_stretch: float = 1.3
     """Sizes change by at most this factor either way."""
     max_growth: float = 1.7
-    """An object's distance, with its size, is corrected by at most this factor."""
+    """An object's distance, with its size, is corrected by at most this factor; so is the height of what stands between
+    two boards."""
     smallest_shrink: float = 0.8
     """What does not fit even so much smaller stays large and is named."""
     shrinks: tuple[float, ...] = (0.95, 0.9, 0.85)

@@ -277,7 +277,7 @@ def _fit(problem: Problem, walk: Walk, i: int, surface: RestingSurface, m: np.nd
     tall = float(_size(problem, walk, i)[normal_axis])
     if tall > surface.clearance_m - INSET_M:
         factor = max((surface.clearance_m - INSET_M) / tall, 1e-3)
-        if factor >= problem.settings.smallest_shrink:
+        if factor * problem.settings.max_growth >= 1.0:
             walk.scale[i, normal_axis] *= factor
         else:
             walk.reasons.append(f"too tall: {label} does not fit in the {surface.clearance_m:.2f} m above its support")

@@ -102,6 +102,19 @@ def test_a_chair_under_a_table_stays_there(room: Room) -> None:
     assert np.allclose(after.object(chair).pose.position, scene.object(chair).pose.position, atol=1e-6)
 
 
+@pytest.mark.parametrize(("taller", "fits"), [(1.3, True), (2.5, False)])
+def test_what_stands_between_boards_is_no_taller_than_their_gap(room: Room, taller: float, fits: bool) -> None:
+    """A shape is taller than the object that was seen there; far too tall, it was hardly seen there."""
+    shelf = room.put("bookshelf_6", (0, 2.0, 0.9), yaw=-np.pi / 2)
+    surface, size = LIBRARY.shape("bookshelf_6").surfaces[1], np.array(LIBRARY.shape("books_18").size_m)
+    tall = float(taller * surface.clearance_m / size[2])
+    at = (0.1, 2.0, surface.height_m + taller * surface.clearance_m / 2)
+    book = room.put("books_18", at, on=shelf, yaw=-np.pi / 2, parent_surface=1, scale=(1.0, 1.0, tall))
+    after, report = FeasibleRecipe(LIBRARY).optimise(room.scene(), Progress())
+    assert (after.object(book).size_m[2] < surface.clearance_m) == fits
+    assert any("too tall" in reason for reason in report.reasons) != fits
+
+
 def test_a_book_in_a_shelf_stays_in_it(room: Room) -> None:
     shelf = room.put("bookshelf_6", (0, 2.0, 0.9), yaw=-np.pi / 2)
     book = room.put("books_18", (0.1, 2.0, 0.62), on=shelf, yaw=-np.pi / 2, parent_surface=1)
