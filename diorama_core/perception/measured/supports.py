@@ -45,7 +45,7 @@ def supports_of_boxes(
         settings: usual errors of heights, and what a gap says against a supporter.
     """
     below = seen_below({o.id: o.mask for o in objects})
-    hidden = {o.id: hidden_share(o.mask, depth_m, settings) for o in objects}
+    hidden = {o.id: rim_occlusion(o.mask, depth_m, settings) for o in objects}
     pictured = {o.id: o.box for o in objects}
     weights = fitted_weights()
     weights = replace(weights, terms={**weights.terms, "gap": settings.gap_nats})
@@ -79,7 +79,7 @@ def supports_of_boxes(
     return tuple(choices[key].edge for key in extents)
 
 
-def hidden_share(
+def rim_occlusion(
     mask: Bool[np.ndarray, "h w"], depth_m: Float[np.ndarray, "h w"], settings: MeasuredSettings = SETTINGS
 ) -> float:
     """Share of an object's lower rim that something nearer, or the picture's border, hides.

@@ -6,7 +6,7 @@ import pytest
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.taxonomy import category
 from diorama_core.perception.measured.boxes import TurnedExtent
-from diorama_core.perception.measured.supports import hidden_share, resting_heights, supports_of_boxes
+from diorama_core.perception.measured.supports import resting_heights, rim_occlusion, supports_of_boxes
 from diorama_core.scene.types import Camera, Intrinsics, Support
 from tests.perception.measured.test_stage import CATEGORIES, EDGES, EXTENTS, at
 from tests.synthetic_rooms import look
@@ -62,11 +62,11 @@ def test_what_is_nearer_below_an_object_hides_its_end() -> None:
     mask = np.zeros((100, 100), dtype=bool)
     mask[20:60, 30:70] = True
     depth = np.where(mask, 3.0, 5.0)
-    assert hidden_share(mask, depth) == 0.0
+    assert rim_occlusion(mask, depth) == 0.0
     depth[60:, :50] = 2.0
-    assert hidden_share(mask, depth) == pytest.approx(0.5)
+    assert rim_occlusion(mask, depth) == pytest.approx(0.5)
     mask[60:] = mask[59]
-    assert hidden_share(mask, depth) == 1.0, "the picture ends there"
+    assert rim_occlusion(mask, depth) == 1.0, "the picture ends there"
 
 
 def test_however_boxes_lie_nothing_holds_itself_up() -> None:
