@@ -167,7 +167,6 @@ class Editor:
         """Create the panels of a newly connected client."""
         gui = client.viser_client.gui
         gui.main_panel.dock_left()
-        gui.main_panel.set_width(LEFT_WIDTH_PX)
         client.handles = self._gestures[client.id] = Gestures(client, self._collisions)
         toolbar = Toolbar(gui, client, self.commands)
         client.job_panel = job_strip = JobStrip(gui, client)
@@ -219,7 +218,12 @@ class Editor:
         listen_for_drops(gui, client, DroppedFiles(client, photo).take)
         panels += [StartPage(gui, client, photo.take), AllProjects(gui, client)]
         right.dock_right()
-        right.set_width(RIGHT_WIDTH_PX)
+
+        def widen() -> None:
+            gui.main_panel.set_width(LEFT_WIDTH_PX)
+            right.set_width(RIGHT_WIDTH_PX)
+
+        widen()
 
         def one_panel() -> None:
             """A phone shows one panel: what is on the right goes into the tabs of the left."""
@@ -228,7 +232,7 @@ class Editor:
             self._right_side(client, place, left.add_tab)
             client.refresh()
 
-        panels.append(OnePanel(gui, client, one_panel))
+        panels.append(OnePanel(gui, client, one_panel, widen))
         client.panels = panels
 
     def _right_side(self, client: Client, place: Place, add_tab: Callable[[str], viser.GuiTabHandle]) -> None:

@@ -112,26 +112,34 @@ class Tabs:
 
 
 class OnePanel:
-    """A hidden button that the page presses by itself where there is room for one panel only."""
+    """Hidden buttons that the page presses by itself: where there is room for one panel, and once both are there."""
 
-    def __init__(self, gui: viser.GuiApi, client: Client, gather: Callable[[], None]) -> None:
-        """Put the button on the page.
+    def __init__(
+        self, gui: viser.GuiApi, client: Client, gather: Callable[[], None], widen: Callable[[], None]
+    ) -> None:
+        """Put the buttons on the page.
 
         Args:
             gui: the page.
             client: the owner.
             gather: moves all tabs into one panel; called once.
+            widen: gives the panels their widths: a page that is slow may have lost those that came with them.
         """
-        self._client, self._gather = client, gather
+        self._client, self._gather, self._widen = client, gather, widen
         self._gathered = False
         self._html = LiveHtml(gui, lambda action: client.post(lambda: self._do(action)))
 
     def refresh(self) -> None:
-        """Draw the button until it was pressed."""
-        hidden = '<button type="button" id="dio-one-panel" data-do="one panel" hidden></button>'
+        """Draw the buttons until all tabs are in one panel."""
+        hidden = "".join(
+            f'<button type="button" id="dio-{do.replace(" ", "-")}" data-do="{do}" hidden></button>'
+            for do in ("one panel", "two panels")
+        )
         self._html.show("" if self._gathered else hidden)
 
     def _do(self, action: Action) -> None:
         if action.do == "one panel" and not self._gathered:
             self._gathered = True
             self._gather()
+        elif action.do == "two panels" and not self._gathered:
+            self._widen()

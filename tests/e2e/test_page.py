@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from playwright.sync_api import Page, expect
+from viser._gui_handles import MainPanelHandle, PanelHandle
 
 from diorama_app.projects.begin import begin_project
 from diorama_app.serve import Running
@@ -54,6 +55,21 @@ def test_the_first_thing_seen_is_ours(context, serve: Callable[..., Running], tm
     assert not [word for word in FOREIGN if word in seen], seen
     assert page.title() == "Diorama"
     page.close()
+
+
+def test_a_panel_that_lost_its_width_gets_it_once_it_is_there(context, serve, visit, tmp_path, monkeypatch) -> None:
+    """viser docks a panel at 300 px if its width is lost on the way, as may happen on a slow page."""
+    send, lost = MainPanelHandle.set_width, iter([True, True])
+
+    def lose_the_first(panel: MainPanelHandle, width: float) -> None:
+        if not next(lost, False):
+            send(panel, width)
+
+    for kind in (MainPanelHandle, PanelHandle):
+        monkeypatch.setattr(kind, "set_width", lose_the_first)
+    page = visit(serve(make_project(tmp_path / "projects" / "demo").folder, PlainLibrary()))
+    widths = "[...document.querySelectorAll('[data-dock-region]')].map((e) => e.offsetWidth)"
+    page.until(lambda: max(page.page.evaluate(widths)) < 270, lambda: f"panels {page.page.evaluate(widths)}")
 
 
 @pytest.mark.parametrize(("width", "height"), [(1440, 900), (1280, 720)])

@@ -39,10 +39,12 @@ def test_asking_for_the_same_tab_again_runs_again(page: Page) -> None:
 
 def test_the_page_asks_once(client, page) -> None:
     asked: list[int] = []
-    panel = OnePanel(page, client, lambda: asked.append(1))
+    widened: list[int] = []
+    panel = OnePanel(page, client, lambda: asked.append(1), lambda: widened.append(1))
     client.panels = [panel]
     panel.refresh()
+    page.act("two panels")
     page.act("one panel")
-    assert asked == [1]
+    assert (asked, widened) == ([1], [1])
     panel.refresh()
     assert not page.shows("one panel")
