@@ -205,8 +205,9 @@ def test_a_cameras_photo_is_shown_on_hover_beside_the_pointer_and_not_in_the_roo
     editor.page.mouse.move(x, y)
     shown = editor.page.locator("#dio-tag canvas")
     expect(shown).to_be_visible()
-    size = shown.evaluate("shown => shown.getBoundingClientRect().toJSON()")
-    assert size["width"] / size["height"] == pytest.approx(camera.intrinsics.width / camera.intrinsics.height, abs=0.02)
+    ratio = "shown => { const r = shown.getBoundingClientRect(); return r.height ? r.width / r.height : 0; }"
+    wanted = pytest.approx(camera.intrinsics.width / camera.intrinsics.height, abs=0.02)
+    editor.until(lambda: shown.evaluate(ratio) == wanted, "the picture has the photo's proportions")
     planes = """() => { let seen = 0; window.__viserMutable.nodeRefFromName['/photo_camera'].traverse((o) => {
         if (o.material?.map && o.material.visible) seen += 1; }); return seen; }"""
     assert editor.page.evaluate(planes) == 0
