@@ -126,14 +126,14 @@ class OnePanel:
             widen: gives the panels their widths: a page that is slow may have lost those that came with them.
         """
         self._client, self._gather, self._widen = client, gather, widen
-        self._gathered = False
+        self._gathered = self._widened = False
         self._html = LiveHtml(gui, lambda action: client.post(lambda: self._do(action)))
 
     def refresh(self) -> None:
-        """Draw the buttons until all tabs are in one panel."""
+        """Draw each button until it was pressed."""
+        left = ("one panel", *(() if self._widened else ("two panels",)))
         hidden = "".join(
-            f'<button type="button" id="dio-{do.replace(" ", "-")}" data-do="{do}" hidden></button>'
-            for do in ("one panel", "two panels")
+            f'<button type="button" id="dio-{do.replace(" ", "-")}" data-do="{do}" hidden></button>' for do in left
         )
         self._html.show("" if self._gathered else hidden)
 
@@ -142,4 +142,6 @@ class OnePanel:
             self._gathered = True
             self._gather()
         elif action.do == "two panels" and not self._gathered:
+            self._widened = True
             self._widen()
+            self.refresh()

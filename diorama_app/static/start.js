@@ -67,12 +67,8 @@
   // The sheet of a phone holds one panel: the server is asked to put all tabs into it.
   const onePanel = () => root.classList.contains("dio-phone") && document.getElementById("dio-one-panel")?.click();
   // A panel that viser docks after it was given its width may have forgotten it: the server gives it once more.
-  let placed = false;
   const twoPanels = () => {
-    const button = document.getElementById("dio-two-panels");
-    if (placed || !button || document.querySelectorAll("[data-dock-region]").length < 2) return;
-    placed = true;
-    button.click();
+    if (document.querySelectorAll("[data-dock-region]").length > 1) document.getElementById("dio-two-panels")?.click();
   };
   // viser knows a page by its first camera; one that is lost while the connection opens is sent again.
   const introduce = () => root.classList.contains("dio-ready") || window.__viserMutable?.sendCamera?.();

@@ -44,6 +44,7 @@ def test_the_page_asks_once(client, page) -> None:
     client.panels = [panel]
     panel.refresh()
     page.act("two panels")
+    assert not page.shows("two panels")
     page.act("one panel")
     assert (asked, widened) == ([1], [1])
     panel.refresh()
