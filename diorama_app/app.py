@@ -34,8 +34,9 @@ from diorama_app.panels.optimiser import Optimiser
 from diorama_app.panels.outliner import Outliner
 from diorama_app.panels.overlays import Compare, Overlays, Silhouettes
 from diorama_app.panels.own_models import OwnModel
-from diorama_app.panels.page import Address, OnePanel, Tabs
+from diorama_app.panels.page import Address, PanelLayout, Tabs
 from diorama_app.panels.photo import PhotoPanel
+from diorama_app.panels.photo_bar import NoSceneCard
 from diorama_app.panels.photo_camera import PhotoCameraPanel
 from diorama_app.panels.photo_correction import PhotoCorrection
 from diorama_app.panels.photo_strip import PhotoStrip
@@ -176,6 +177,7 @@ class Editor:
             UnsavedChanges(gui, client),
             Tape(gui, client),
             Compare(gui, client, self.views),
+            NoSceneCard(gui, client),
             Overlays(client, self._outlines),
             Toasts(gui, client),
             Walls(gui, client),
@@ -232,7 +234,7 @@ class Editor:
             self._right_side(client, place, left.add_tab)
             client.refresh()
 
-        panels.append(OnePanel(gui, client, one_panel, widen))
+        panels.append(PanelLayout(gui, client, one_panel, widen))
         client.panels = panels
 
     def _right_side(self, client: Client, place: Place, add_tab: Callable[[str], viser.GuiTabHandle]) -> None:

@@ -29,7 +29,7 @@ class Faults:
     @contextmanager
     def injected(self) -> Iterator[None]:
         """While it lasts, the program meets these faults."""
-        flush, rename, now = os.fsync, os.replace, time.time
+        flush, rename, now, parts = os.fsync, os.replace, time.time, time.gmtime
 
         def step() -> None:
             if self.full:
@@ -53,4 +53,5 @@ class Faults:
             patch.setattr(os, "fsync", fsync)
             patch.setattr(os, "replace", replace)
             patch.setattr(time, "time", lambda: now() + self.ahead_s)
+            patch.setattr(time, "gmtime", lambda at_s=None: parts(time.time() if at_s is None else at_s))
             yield

@@ -111,7 +111,7 @@ class Tabs:
         self._opener.content = run_once(opening)
 
 
-class OnePanel:
+class PanelLayout:
     """Hidden buttons that the page presses by itself: where there is room for one panel, and once both are there."""
 
     def __init__(

@@ -15,7 +15,7 @@ from PIL import Image
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import GO_COLOUR, UploadField, enable, on_change, on_press, show_if, show_value
 from diorama_app.panels.input_questions import ask_depth
-from diorama_app.panels.photo_bar import no_scene_card, photo_bar
+from diorama_app.panels.photo_bar import photo_bar
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.projects.begin import begin_project, keep_given
 from diorama_app.projects.reading_again import upload_again, with_depth
@@ -79,7 +79,6 @@ class PhotoPanel:
         self._bar = LiveHtml(gui, self._act)
         self._naming = LiveHtml(gui, self._act)
         self._list = LiveHtml(gui, self._act)
-        self._no_scene = LiveHtml(gui, self._act, floating="dio-no-scene")
         client.open_board = self._boxes.open
         client.proposals, client.dismiss = self._boxes.proposals, self._boxes.dismiss
         self._more = gui.add_folder(_("More"), expand_by_default=False)
@@ -163,7 +162,6 @@ class PhotoPanel:
         if inputs is not None and idle and (proposed or inputs.photo.equirectangular):
             self._build_if_awaited(inputs)
         self._bar.show("" if inputs is None else photo_bar(client, inputs, proposed))
-        self._no_scene.show(no_scene_card(client))
         self._naming.show("" if inputs is None else self._boxes.name_field(inputs))
         self._list.show("" if inputs is None else box_list(inputs, client.selected_box))
         if inputs is not None:

@@ -1,12 +1,14 @@
-"""The bar under the photo: how far marking is, and the buttons that build from it."""
+"""The bar under the photo, with how far marking is and buttons that build from it, and the card of an empty view."""
 
 from __future__ import annotations
 
-from diorama_app.reconstruction.build_job import builds_unasked, ready_to_build
+import viser
+
+from diorama_app.reconstruction.build_job import build, builds_unasked, ready_to_build
 from diorama_app.reconstruction.photo_joining import awaits_photo
 from diorama_app.session.client import Client
 from diorama_app.strings import _, plural
-from diorama_app.web.html import button, text
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.artefacts import Inputs
 from diorama_core.perception.inputs.boxes.agreement import is_upside_down
 
@@ -71,18 +73,36 @@ def _may_be_bent_back(client: Client, inputs: Inputs) -> bool:
     return bool(inputs.photo.straightened) and project is not None and project.has_upload("photo")
 
 
-def no_scene_card(client: Client) -> str:
-    """What can be done where the view is empty, since the photo was put away before a scene was built."""
-    inputs, session = client.session.inputs, client.session
-    if inputs is None or not session.is_unbuilt or client.view.canvas.is_open or session.jobs.status is not None:
-        return ""
-    count = len(inputs.boxes)
-    message = plural(
-        "There is no scene yet: {count} object is marked.", "There is no scene yet: {count} objects are marked.", count
-    )
-    message = message if count else _("There is no scene yet: nothing is marked.")
-    buttons = button(marking_label(inputs), "board") + build_button(inputs, busy=False)
-    return f'<div class="card"><p>{text(message)}</p><div class="bar">{buttons}</div></div>'
+class NoSceneCard:
+    """What can be done where the view is empty, since the photo was put away before a scene was built.
+
+    It lies over the view whichever tab is in front: a page draws nothing that belongs to another tab.
+    """
+
+    def __init__(self, gui: viser.GuiApi, client: Client) -> None:
+        self._client = client
+        self._html = LiveHtml(gui, self._act, floating="dio-no-scene")
+
+    def refresh(self) -> None:
+        """Show it where there is a photo and no scene, and nothing else fills the view."""
+        client, session = self._client, self._client.session
+        inputs = client.session.inputs
+        if inputs is None or not session.is_unbuilt or client.view.canvas.is_open or session.jobs.status is not None:
+            self._html.show("")
+            return
+        count = len(inputs.boxes)
+        marked = plural(
+            "There is no scene yet: {count} object is marked.",
+            "There is no scene yet: {count} objects are marked.",
+            count,
+        )
+        message = marked if count else _("There is no scene yet: nothing is marked.")
+        buttons = button(marking_label(inputs), "board") + build_button(inputs, busy=False)
+        self._html.show(f'<div class="card"><p>{text(message)}</p><div class="bar">{buttons}</div></div>')
+
+    def _act(self, action: Action) -> None:
+        client = self._client
+        client.post(client.open_board if action.do == "board" else lambda: build(client.session))
 
 
 def marking_label(inputs: Inputs) -> str:

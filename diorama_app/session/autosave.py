@@ -66,7 +66,7 @@ class Autosave:
         """Start the thread.
 
         Args:
-            on_error: told in one line why something was not saved, once until it is.
+            on_error: told in one line why something was not saved, once until it is, or is no longer stored elsewhere.
             recovery: where changes lie until they are saved.
             on_saved: told in one line when something that could not be saved has been.
             on_version: told when a scene that was overwritten became an earlier version.
@@ -76,6 +76,8 @@ class Autosave:
         self.recovery = recovery or Recovery()
         self.trouble = ""
         """Why saving fails at the moment; empty when it succeeds."""
+        self._is_retained = False
+        """Whether what could not be saved last lies beside the project."""
         self._condition = threading.Condition()
         self._writing = threading.RLock()
         """Locked from dequeuing until written, so that an older scene never overwrites a newer one."""
@@ -178,7 +180,9 @@ class Autosave:
         return True
 
     def _not_saved(self, reason: str, *, retained: bool) -> None:
-        message = _(KEPT_BESIDE if retained else IN_MEMORY).format(reason=_(reason))
-        if message != self.trouble:
-            self.trouble = message
-            self._on_error(message)
+        untold, told_retained = not self.trouble, self._is_retained
+        self._is_retained = retained
+        # The reason may name a file that has the time in its name: at each retry it is another one.
+        self.trouble = _(KEPT_BESIDE if retained else IN_MEMORY).format(reason=_(reason))
+        if untold or retained != told_retained:
+            self._on_error(self.trouble)

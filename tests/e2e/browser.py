@@ -67,6 +67,26 @@ BEEN_HERE = (
     "{ sessionStorage.setItem('diorama-begun', 'yes'); localStorage.setItem('diorama-tour', 'seen'); }"
 )
 
+NOTES = """(() => {
+    const notes = window.__notes = [], note = (...words) => {
+        notes.push([Math.round(performance.now()), ...words].join(' '));
+        if (notes.length > 60) notes.shift();
+    };
+    for (const kind of ['keydown', 'pointerdown', 'change', 'focusin', 'focusout']) addEventListener(kind, (event) =>
+        note(kind, event.key ?? '', event.target.outerHTML?.slice(0, 120) ?? event.target.nodeName), true);
+    const watch = setInterval(() => {
+        const m = window.__viserMutable;
+        if (!m?.sendMessage || m.sendMessage.noted) return;
+        const send = m.sendMessage;
+        m.sendMessage = (message) => {
+            if (!/Camera|Pointer/.test(message.type)) note('sent', JSON.stringify(message).slice(0, 200));
+            return send(message);
+        };
+        m.sendMessage.noted = true;
+    }, 100);
+})()"""
+"""Notes what a person did to the page and what it sent, for the report of a test that fails."""
+
 ON_CANVAS = "([x, y]) => (document.elementFromPoint(x, y) || {}).tagName === 'CANVAS'"
 
 
@@ -116,6 +136,7 @@ class EditorPage:
         newcomer: bool = False,
     ) -> EditorPage:
         page = context.new_page()
+        page.add_init_script(NOTES)
         if not newcomer:  # who has been here sees neither the start page nor the tour
             page.add_init_script(BEEN_HERE)
         page.set_default_timeout(patience_ms)
@@ -278,6 +299,15 @@ class EditorPage:
         with self.page.expect_file_chooser() as chosen:
             self.button(button).click()
         chosen.value.set_files(str(path))
+
+    def story(self) -> str:
+        """What was done last, in the page's view and in the program's."""
+        notes = self.page.evaluate("[Math.round(performance.now()), ...window.__notes]")
+        entries = self.session.document.history.entries
+        focus = self.page.evaluate("document.activeElement.outerHTML.slice(0, 120)")
+        steps = ", ".join(entry.label for entry in entries[-6:])
+        at = self.session.document.history.cursor - len(entries) + 1
+        return f"steps: {steps} (at {at}); focus: {focus}; page:\n" + "\n".join(map(str, notes))
 
     def picture(self, path: Path) -> None:
         self.settle()

@@ -216,5 +216,7 @@ def keep_picture(page: EditorPage, name: str, *, failed: bool = False) -> None:
     """Keep what is on the screen, where people want to look at it; drawing it takes a third of a second."""
     if not failed and "DIORAMA_TEST_PICTURES" not in os.environ:
         return
+    if failed:
+        print(page.story())  # beside the test's report
     ARTEFACTS.mkdir(parents=True, exist_ok=True)
     page.page.screenshot(path=str(ARTEFACTS / f"{name}.png"))

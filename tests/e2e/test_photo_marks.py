@@ -138,6 +138,18 @@ def test_escape_deselects_first_and_an_empty_view_offers_to_go_on(started: Edito
     expect(card).to_have_count(0)
 
 
+def test_the_offer_of_an_empty_view_goes_when_the_page_does_whichever_tab_is_in_front(started: EditorPage) -> None:
+    editor, card = started, started.page.locator("#dio-no-scene")
+    editor.page.keyboard.press("Escape")
+    expect(card).to_contain_text("nothing is marked")
+    editor.tab("Scene")
+    editor.page.wait_for_timeout(300)  # the page remembers the tab
+    editor.page.evaluate("window.__dioGoTo('demo')")
+    editor.until(lambda: bool(editor.running.session.clients), "at the first project")
+    expect(editor.row("chair")).to_be_visible()
+    expect(card).to_have_count(0)
+
+
 def test_a_box_drawn_by_hand_gets_the_kind_that_is_recognised(editor: EditorPage) -> None:
     editor.tab("Photo")
     editor.upload("Upload a photo", EXAMPLE / "photo.jpg")

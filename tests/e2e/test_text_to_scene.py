@@ -53,5 +53,5 @@ def test_a_described_room_is_furnished_and_networks_are_offered(
     expect(editor.page.get_by_text("outlines by the network that comes along, and by colour")).to_be_visible()
     expect(editor.page.get_by_text(re.compile(r"\b5 MB to download\."))).to_be_visible()
     expect(editor.button("Download networks")).to_be_disabled()
-    editor.page.get_by_role("checkbox").last.click()
+    editor.page.get_by_role("checkbox", name="I accept these licences").check()
     expect(editor.button("Download networks")).to_be_enabled()

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import html
 
-from diorama_app.panels.page import STORED_AS, Address, OnePanel, Tabs
+from diorama_app.panels.page import STORED_AS, Address, PanelLayout, Tabs
 from tests.app.page import Page
 
 
@@ -40,7 +40,7 @@ def test_asking_for_the_same_tab_again_runs_again(page: Page) -> None:
 def test_the_page_asks_once(client, page) -> None:
     asked: list[int] = []
     widened: list[int] = []
-    panel = OnePanel(page, client, lambda: asked.append(1), lambda: widened.append(1))
+    panel = PanelLayout(page, client, lambda: asked.append(1), lambda: widened.append(1))
     client.panels = [panel]
     panel.refresh()
     page.act("two panels")

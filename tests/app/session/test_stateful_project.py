@@ -177,3 +177,14 @@ class ProjectMachine(RuleBasedStateMachine):
 
 TestProject = ProjectMachine.TestCase
 TestProject.settings = settings(max_examples=12, stateful_step_count=25, deadline=None)
+
+
+def test_a_full_disk_is_told_once_though_each_earlier_version_would_have_its_own_name(tmp_path: Path) -> None:
+    project, told, faults = make_project(tmp_path / "demo"), list[str](), Faults(full=True)
+    saver = SteppedAutosave(told.append, Recovery(tmp_path / "unsaved"))
+    for number in range(3):
+        faults.ahead_s = 61.0 * number
+        saver.save_soon(project, edits.rename(furnished_scene(), "chair_1", f"edit {number}"))
+        with faults.injected():
+            saver.flush()
+    assert [m.startswith("Not saved") for m in told] == [True]
