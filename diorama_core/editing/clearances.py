@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.casting import cast_plane
@@ -42,11 +43,27 @@ class Clearance:
 
 
 @dataclass(frozen=True, eq=False)
-class _Neighbour:
-    """Another object, and the heights of its corners, which all four sides ask for."""
+class _Boxes:
+    """Other objects, for all four sides."""
 
-    item: SceneObject
-    heights: Float[np.ndarray, "8"]
+    ids: tuple[str, ...]
+    R: Float[np.ndarray, "b 3 3"]
+    centre: Float[np.ndarray, "b 3"]
+    half: Float[np.ndarray, "b 3"]
+
+    @classmethod
+    def of(cls, items: Sequence[SceneObject]) -> _Boxes:
+        """The boxes of objects."""
+        poses = [o.pose for o in items]
+        R = np.array([p.R_world_object for p in poses]).reshape(-1, 3, 3)
+        centre, size = np.array([p.position for p in poses]), np.array([o.size_m for o in items])
+        return cls(tuple(o.id for o in items), R, centre.reshape(-1, 3), size.reshape(-1, 3) / 2)
+
+    def heights_shared_with(self, item: SceneObject) -> tuple[Float[np.ndarray, "b"], Float[np.ndarray, "b"]]:
+        """Lower and upper end of the heights that each shares with an object."""
+        rise = (np.abs(self.R[:, 2]) * self.half).sum(axis=1)
+        low, high = _heights(item.corners_world)
+        return np.maximum(self.centre[:, 2] - rise, low), np.minimum(self.centre[:, 2] + rise, high)
 
 
 def clearances(scene: Scene, object_id: str) -> tuple[Clearance, ...]:
@@ -56,7 +73,7 @@ def clearances(scene: Scene, object_id: str) -> tuple[Clearance, ...]:
     """
     item = scene.object(object_id)
     family = {object_id, *descendants(scene, object_id), *ancestors(scene, object_id)}
-    others = [_Neighbour(o, o.corners_world[:, 2]) for o in scene.objects if o.id not in family and not o.hidden]
+    others = _Boxes.of([o for o in scene.objects if o.id not in family and not o.hidden])
     walls = scene.architecture.by_role("wall")
     nearest = (_nearest(item, side, walls, others) for side in SIDES)
     return tuple(c for c in nearest if c is not None)
@@ -91,72 +108,92 @@ def _outward(item: SceneObject, side: Side) -> Float[np.ndarray, "3"]:
     return np.asarray(direction / max(float(np.linalg.norm(direction)), 1e-9))
 
 
-def _nearest(item: SceneObject, side: Side, walls: tuple[Plane, ...], others: list[_Neighbour]) -> Clearance | None:
+def _nearest(item: SceneObject, side: Side, walls: tuple[Plane, ...], others: _Boxes) -> Clearance | None:
     axis, _ = SIDES[side]
     out = _outward(item, side)
     along = np.array([-out[1], out[0], 0.0])
     half, width = float(item.size_m[axis]) / 2, float(item.size_m[1 - axis])
     starts = item.pose.position + ACROSS[:, None] * width * along  # rays from the middle notice what is reached into
-    low, high = (float(e) for e in (item.corners_world[:, 2].min(), item.corners_world[:, 2].max()))
-    facing = [w for w in walls if float(w.normal @ out) < 0]
-    spans = [_overlap(low, high, w.polygon[:, 2]) for w in facing] + [_overlap(low, high, o.heights) for o in others]
-    reached = [_to_wall(starts, out, w, span) for w, span in zip(facing, spans, strict=False)]
-    reached += _to_boxes(starts, out, [o.item for o in others], spans[len(facing) :])
-    if not reached:
-        return None
-    shared = np.array([span[1] - span[0] for span in spans])
-    least = np.array([0.0] * len(facing) + [MIN_OVERLAP_M] * len(others))
-    reach = np.where((shared > least)[:, None], np.array(reached), np.inf) - half
-    # As near along the whole side: from its middle.
-    nearest = reach + 1e-6 * np.abs(ACROSS)
-    which, ray = (int(k) for k in np.unravel_index(int(np.argmin(nearest)), nearest.shape))
-    distance = float(reach[which, ray])
+    low, high = others.heights_shared_with(item)
+    nearest = _Reached.of(_to_boxes(starts, out, others, (low + high) / 2, high - low > MIN_OVERLAP_M))
+    other, height = "", 0.0
+    if np.isfinite(nearest.cost):
+        other, height = others.ids[nearest.which], float(low[nearest.which] + high[nearest.which]) / 2
+    for wall, level, before in _planes_before(starts, out, walls, _heights(item.corners_world)):
+        if before.min() >= nearest.cost:
+            break  # and so are the others
+        hit = is_in_plane_polygon(level + before[:, None] * out, wall)
+        reached = _Reached.of(np.where(hit, before, np.inf)[None])
+        if reached.cost < nearest.cost:
+            nearest, other, height = reached, wall.id, float(level[0, 2])
+    distance = nearest.distance - half
     if not np.isfinite(distance) or distance > MAX_M:
         return None
-    height = float(np.mean(spans[which]))
-    face = np.array([*(starts[ray] + half * out)[:2], height])
-    name = facing[which].id if which < len(facing) else others[which - len(facing)].item.id
-    return Clearance(side, distance, face, face + distance * out, name)
+    face = np.array([*(starts[nearest.ray] + half * out)[:2], height])
+    return Clearance(side, distance, face, face + distance * out, other)
 
 
-def _overlap(low: float, high: float, heights: Float[np.ndarray, "_"]) -> tuple[float, float]:
-    """The heights that two things share."""
-    return max(low, float(heights.min())), min(high, float(heights.max()))
+@dataclass(frozen=True, eq=False)
+class _Reached:
+    """The nearest of what rays reach."""
+
+    cost: float
+    """The distance; of those that are as near along the whole side that from its middle is the least."""
+    distance: float
+    which: int
+    ray: int
+
+    @classmethod
+    def of(cls, distances: Float[np.ndarray, "b n"]) -> _Reached:
+        """The nearest; infinitely far where nothing is reached."""
+        if not len(distances):
+            return cls(np.inf, np.inf, 0, 0)
+        costs = distances + 1e-6 * np.abs(ACROSS)
+        which, ray = (int(k) for k in np.unravel_index(int(np.argmin(costs)), costs.shape))
+        return cls(float(costs[which, ray]), float(distances[which, ray]), which, ray)
 
 
-def _to_wall(
-    starts: Float[np.ndarray, "n 3"], out: Float[np.ndarray, "3"], wall: Plane, span: tuple[float, float]
-) -> Float[np.ndarray, "n"]:
-    """How far a wall is from every start, at the middle of the heights that it shares with the object."""
-    level = np.column_stack([starts[:, :2], np.full(len(starts), np.mean(span))])
-    t = (wall.offset - level @ wall.normal) / float(out @ wall.normal)
-    hit = is_in_plane_polygon(level + t[:, None] * out, wall) & (t > 0)
-    return np.asarray(np.where(hit, t, np.inf))
+def _heights(points: Float[np.ndarray, "_ 3"]) -> tuple[float, float]:
+    return float(points[:, 2].min()), float(points[:, 2].max())
+
+
+def _planes_before(
+    starts: Float[np.ndarray, "n 3"], out: Float[np.ndarray, "3"], walls: Sequence[Plane], heights: tuple[float, float]
+) -> list[tuple[Plane, Float[np.ndarray, "n 3"], Float[np.ndarray, "n"]]]:
+    """Walls that face the rays, the nearest first: with the rays' starts at the middle of the heights that a wall and
+    an object share, and how far its plane is from each."""
+    before = []
+    for wall in walls:
+        slope, (low, high) = float(wall.normal @ out), _heights(wall.polygon)
+        low, high = max(low, heights[0]), min(high, heights[1])
+        if slope < 0 and low < high:
+            level = np.column_stack([starts[:, :2], np.full(len(starts), (low + high) / 2)])
+            t = (wall.offset - level @ wall.normal) / slope
+            before.append((wall, level, np.where(t > 0, t, MAX_M + 1.0)))
+    return sorted(before, key=lambda one: float(one[2].min()))
 
 
 def _to_boxes(
     starts: Float[np.ndarray, "n 3"],
     out: Float[np.ndarray, "3"],
-    others: list[SceneObject],
-    spans: list[tuple[float, float]],
-) -> list[Float[np.ndarray, "n"]]:
-    """How far the boxes of objects are from every start (slab method), at the middle of the heights they share."""
-    if not others:
-        return []
-    R = np.stack([o.pose.R_world_object for o in others])
-    centre = np.stack([o.pose.position for o in others])
-    half = np.stack([o.size_m for o in others])[:, None] / 2
-    origins = np.repeat(starts[None], len(others), axis=0)
-    origins[..., 2] = np.mean(spans, axis=1)[:, None]
-    local = np.einsum("bji,bnj->bni", R, origins - centre[:, None])
-    direction = np.einsum("bji,j->bi", R, out)[:, None]
+    others: _Boxes,
+    heights: Float[np.ndarray, "b"],
+    asked: Bool[np.ndarray, "b"],
+) -> Float[np.ndarray, "b n"]:
+    """How far boxes are from every start (slab method), each at a height of its own; infinitely where not asked."""
+    origins = np.repeat(starts[None], len(heights), axis=0)
+    origins[..., 2] = heights[:, None]
+    half = others.half[:, None]
+    local = np.einsum("bji,bnj->bni", others.R, origins - others.centre[:, None])
+    direction = np.einsum("bji,j->bi", others.R, out)[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         a, b = (-half - local) / direction, (half - local) / direction
     parallel = np.abs(direction) < 1e-12
     within = np.abs(local) <= half
     enter = np.where(parallel, np.where(within, -np.inf, np.inf), np.minimum(a, b)).max(axis=-1)
     leave = np.where(parallel, np.where(within, np.inf, -np.inf), np.maximum(a, b)).min(axis=-1)
-    return list(np.where((enter <= leave) & (leave > 0), np.maximum(enter, 0.0), np.inf))
+    met = asked[:, None] & (enter <= leave) & (leave > 0)
+    return np.asarray(np.where(met, np.maximum(enter, 0.0), np.inf))
 
 
 def room_before(scene: Scene, plane_id: str) -> Clearance | None:
