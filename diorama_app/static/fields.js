@@ -19,8 +19,8 @@
     field.dispatchEvent(new Event("change", { bubbles: true }));
   };
   // In a field with nothing half typed, and on a slider, undo and redo are meant for the scene.
-  const undoes = (event) => (event.ctrlKey || event.metaKey) && /^[zy]$/i.test(event.key)
-    && event.target.matches?.("input[data-change], input[type=range]")
+  const undoKey = (event) => (event.ctrlKey || event.metaKey) && /^[zy]$/i.test(event.key);
+  const undoes = (event) => undoKey(event) && event.target.matches?.("input[data-change], input[type=range]")
     && !(last?.field === event.target && last.typed !== null);
   addEventListener("focusin", (event) => {
     const field = event.target;
@@ -53,6 +53,7 @@
       field.value = field.defaultValue;
       field.blur();
     }
+    if (undoKey(event)) window.__dioTellSlider?.(); // what it did is undone, not done after
     if (undoes(event)) {
       event.stopImmediatePropagation();
       event.preventDefault();

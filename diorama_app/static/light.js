@@ -74,14 +74,15 @@
   });
   addEventListener("change", (event) => { if (event.isTrusted && event.target === held) held = null; }, true);
   // Sliders of other panels are drawn anew with what they tell: they tell it when the hand is off them.
-  let down = false, late = 0;
+  let down = false, late = 0, untold = null;
+  const tellNow = () => { if (untold?.isConnected) untold.dispatchEvent(new Event("change", { bubbles: true })); };
   const rest = (field) => {
     clearTimeout(late);
-    late = setTimeout(() => {
-      if (down || !field.isConnected) return;
-      field.dispatchEvent(new Event("change", { bubbles: true }));
-    }, 200);
+    untold = field;
+    late = setTimeout(() => down || tellNow(), 200);
   };
+  addEventListener("change", (event) => { if (!event.isTrusted && event.target === untold) untold = null; }, true);
+  window.__dioTellSlider = tellNow;
   let moved = null;
   addEventListener("pointerdown", () => { down = true; }, true);
   addEventListener("pointerup", () => { down = false; if (moved) rest(moved); }, true);

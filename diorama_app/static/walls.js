@@ -51,6 +51,7 @@
   const frame = (m) => {
     window.__dioSun?.frame(m);
     window.__dioSilhouettes?.frame(m);
+    window.__dioDistances?.frame(m);
     const d = W.room, root = m.nodeRefFromName[''];
     if (!d || !root) return;
     const now = performance.now(), step = Math.min(now - (W.last || 0), 60) / d.ms;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from typing import Literal
 
@@ -14,11 +15,11 @@ from diorama_app.viewport.annotation_canvas import AnnotationCanvas
 from diorama_app.viewport.camera import ViewCamera
 from diorama_app.viewport.decorations import SELECTED_COLOUR
 from diorama_app.viewport.photo_overlay import PhotoOverlay
+from diorama_app.web.html import run_once
 from diorama_core.scene.types import Plane
 
 PLANE_COLOURS = {"floor": (190, 120, 30), "wall": (30, 110, 220), "ceiling": (120, 80, 190)}
 PLANE_LIFT_M = 0.01
-DISTANCE_COLOUR = (47, 111, 214)
 TAPE_COLOUR = (200, 60, 110)
 COLLIDER_COLOUR = (20, 150, 110)
 BRAND_COLOUR = (47, 111, 214)
@@ -39,7 +40,8 @@ class ClientView:
         self._tape: list[viser.SceneNodeHandle] = []
         self._surface: viser.SceneNodeHandle | None = None
         self._colliders: viser.SceneNodeHandle | None = None
-        self._distances: list[tuple[viser.LineSegmentsHandle, viser.LabelHandle]] = []
+        self._distances = viser_client.gui.add_html("")
+        self._distances_told = "[]"
 
     def notice(self, message: str, kind: NoticeKind = "info", seconds: float | None = None) -> None:
         """A short notice at the edge of the view; what went wrong stays longer.
@@ -80,27 +82,15 @@ class ClientView:
             ]
 
     def show_distances(self, distances: Sequence[tuple[Vector, Vector, str]]) -> None:
-        """Lines between two points each, with words at their middle; none without. Nodes are used again."""
-        scene = self._viser_client.scene
-        with self._viser_client.atomic():
-            for number, (start, end, words) in enumerate(distances):
-                points, middle = np.stack([start, end])[None], 0.5 * (np.asarray(start) + np.asarray(end))
-                if number == len(self._distances):
-                    line = scene.add_line_segments(
-                        f"/distances/{number}/line",
-                        points=points,
-                        colors=DISTANCE_COLOUR,
-                        thickness=2.5,
-                        thickness_units="screen",
-                    )
-                    label = scene.add_label(f"/distances/{number}/length", words, position=middle)
-                    self._distances.append((line, label))
-                line, label = self._distances[number]
-                line.points, label.position, label.text = points, middle, words
-                line.visible = label.visible = True
-            for line, label in self._distances[len(distances) :]:
-                if line.visible:
-                    line.visible = label.visible = False
+        """Lines between two points each, with words at their middle; none without.
+
+        The page draws them over the view (`static/distances.js`): beside an object in the hand the picture stays.
+        """
+        rows = [[*(np.round(np.asarray(end, float), 4).tolist() for end in ends), words] for *ends, words in distances]
+        told = json.dumps(rows, separators=(",", ":"))
+        if told != self._distances_told:
+            self._distances_told = told
+            self._distances.content = run_once(f"window.__dioDistances.told({told})")
 
     def show_surface(self, plane: Plane | None) -> None:
         """The outline of the surface that is chosen; none without."""

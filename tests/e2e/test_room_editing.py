@@ -16,8 +16,7 @@ from tests.e2e.test_handles_and_supports import at_rest
 
 pytestmark = pytest.mark.browser
 
-SHOWN = """() => Object.entries(window.__viserMutable.nodeRefFromName)
-    .filter(([name, node]) => /^\\/distances\\/\\d+\\/line$/.test(name) && node && node.visible).length"""
+SHOWN = "() => document.querySelectorAll('#dio-distances .line').length"
 
 
 def scene(editor: EditorPage) -> Scene:
@@ -103,3 +102,10 @@ def test_a_door_from_the_library_cuts_the_wall_it_is_put_on(
     slider.blur()  # in a field the keys would undo what was typed
     page.page.keyboard.press("Control+z")
     page.until(lambda: scene(page).object(door.id).open_share == 0.0, "closed again in one step")
+    expect(slider).to_have_value("0")
+    slider.press("ArrowRight")
+    page.page.keyboard.press("Control+z")
+    document, step = page.session.document, f"open {door.label} by 5 %"
+    page.until(lambda: document.history.can_redo and document.history.entries[-1].label == step, "done and undone")
+    page.page.wait_for_timeout(500)  # longer than a slider waits for the hand to go on
+    assert scene(page).object(door.id).open_share == 0.0, "what was undone at once stays undone"

@@ -48,3 +48,15 @@ def test_a_tape_needs_two_ends_and_goes_away(server, view) -> None:
 def test_notices_reach_the_page(view) -> None:
     view.notice("the photo is outlined", "good")
     assert view._viser_client.told == ["the photo is outlined"]
+
+
+def test_distances_are_told_once_and_taken_away(view) -> None:
+    told = view._distances
+    ends = np.array([0.0, 1.0, 0.5]), np.array([0.30000001, 1.0, 0.5])
+    view.show_distances([(*ends, "0' 11 3/4\"")])
+    first = told.content
+    assert "__dioDistances.told([[[0.0,1.0,0.5],[0.3,1.0,0.5],&quot;0&#x27; 11 3/4\\&quot;&quot;]])" in first
+    view.show_distances([(ends[0], ends[1] + 1e-6, "0' 11 3/4\"")])
+    assert told.content == first
+    view.show_distances([])
+    assert "told([])" in told.content
