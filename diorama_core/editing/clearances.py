@@ -66,6 +66,10 @@ class _Boxes:
         return np.maximum(self.centre[:, 2] - rise, low), np.minimum(self.centre[:, 2] + rise, high)
 
 
+_Wall = tuple[Plane, float]
+"""With the middle of the heights that it shares with the object."""
+
+
 def clearances(scene: Scene, object_id: str) -> tuple[Clearance, ...]:
     """What is nearest on each side of an object, level; sides with nothing within reach are left out.
 
@@ -74,7 +78,11 @@ def clearances(scene: Scene, object_id: str) -> tuple[Clearance, ...]:
     item = scene.object(object_id)
     family = {object_id, *descendants(scene, object_id), *ancestors(scene, object_id)}
     others = _Boxes.of([o for o in scene.objects if o.id not in family and not o.hidden])
-    walls = scene.architecture.by_role("wall")
+    ends = _heights(item.corners_world)
+    spans = [(w, *_heights(w.polygon)) for w in scene.architecture.by_role("wall")]
+    walls = [
+        (w, (max(low, ends[0]) + min(high, ends[1])) / 2) for w, low, high in spans if low < ends[1] and ends[0] < high
+    ]
     nearest = (_nearest(item, side, walls, others) for side in SIDES)
     return tuple(c for c in nearest if c is not None)
 
@@ -108,7 +116,7 @@ def _outward(item: SceneObject, side: Side) -> Float[np.ndarray, "3"]:
     return np.asarray(direction / max(float(np.linalg.norm(direction)), 1e-9))
 
 
-def _nearest(item: SceneObject, side: Side, walls: tuple[Plane, ...], others: _Boxes) -> Clearance | None:
+def _nearest(item: SceneObject, side: Side, walls: Sequence[_Wall], others: _Boxes) -> Clearance | None:
     axis, _ = SIDES[side]
     out = _outward(item, side)
     along = np.array([-out[1], out[0], 0.0])
@@ -119,7 +127,7 @@ def _nearest(item: SceneObject, side: Side, walls: tuple[Plane, ...], others: _B
     other, height = "", 0.0
     if np.isfinite(nearest.cost):
         other, height = others.ids[nearest.which], float(low[nearest.which] + high[nearest.which]) / 2
-    for wall, level, before in _planes_before(starts, out, walls, _heights(item.corners_world)):
+    for wall, level, before in _planes_before(starts, out, walls):
         if before.min() >= nearest.cost:
             break  # and so are the others
         hit = is_in_plane_polygon(level + before[:, None] * out, wall)
@@ -158,16 +166,15 @@ def _heights(points: Float[np.ndarray, "_ 3"]) -> tuple[float, float]:
 
 
 def _planes_before(
-    starts: Float[np.ndarray, "n 3"], out: Float[np.ndarray, "3"], walls: Sequence[Plane], heights: tuple[float, float]
+    starts: Float[np.ndarray, "n 3"], out: Float[np.ndarray, "3"], walls: Sequence[_Wall]
 ) -> list[tuple[Plane, Float[np.ndarray, "n 3"], Float[np.ndarray, "n"]]]:
-    """Walls that face the rays, the nearest first: with the rays' starts at the middle of the heights that a wall and
-    an object share, and how far its plane is from each."""
+    """Walls that face the rays, the nearest first: with the rays' starts at the wall's height, and how far its plane is
+    from each."""
     before = []
-    for wall in walls:
-        slope, (low, high) = float(wall.normal @ out), _heights(wall.polygon)
-        low, high = max(low, heights[0]), min(high, heights[1])
-        if slope < 0 and low < high:
-            level = np.column_stack([starts[:, :2], np.full(len(starts), (low + high) / 2)])
+    for wall, height in walls:
+        slope = float(wall.normal @ out)
+        if slope < 0:
+            level = np.column_stack([starts[:, :2], np.full(len(starts), height)])
             t = (wall.offset - level @ wall.normal) / slope
             before.append((wall, level, np.where(t > 0, t, MAX_M + 1.0)))
     return sorted(before, key=lambda one: float(one[2].min()))
