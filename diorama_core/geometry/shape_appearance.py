@@ -15,24 +15,17 @@ from typing import Any
 import numpy as np
 import trimesh
 from jaxtyping import Float, Float32, Int, Int32, UInt8
-from scipy.spatial import cKDTree
 
 from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import read_arrays, write_arrays
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
 
-_FORMAT = "4"
+_FORMAT = "5"
 _CACHED_SHAPES = 512
 _MIN_AREA_M2 = 1e-12
 _READ_ALONG_EDGE = 5
 """Rows of points at which a face's picture is read."""
-_AXIS_POINTS = 500
-_MAIN_SHARES = (0.9, 0.8)
-"""Shares of the surface that belong to the body, without handles and spouts."""
-_KEEPS_MIDDLE = 0.95
-_OPAQUE = 200
-"""Opacity above which a face hides everything behind it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,28 +40,11 @@ class ShapeAppearance:
     """Surface of those parts."""
     face_rgba: UInt8[np.ndarray, "f 4"]
     """sRGB colour of every face, the mean of its picture, and its opacity; all 0 where no colour is known."""
-    face_spread: UInt8[np.ndarray, "f"]
-    """Standard deviation of the picture on every face, as an sRGB value: what a single colour does not tell."""
 
     @cached_property
     def caster(self) -> ShapeCaster:
         """The triangles, prepared for rays."""
         return ShapeCaster(trimesh.Trimesh(self.vertices, self.faces, process=False))
-
-    @cached_property
-    def axis_xy(self) -> Float[np.ndarray, "2"]:
-        """Where the upright axis of its body is, about which it turns in place: a mug's handle is beside that.
-
-        Of the middle and the middles of its main parts the one about which it looks most alike when turned.
-        """
-        points = self.spread_points(_AXIS_POINTS)
-        if len(points) < 2:
-            return np.zeros(2)
-        tree = cKDTree(points)
-        options = [np.zeros(2), *(_middle(points[:, :2], share) for share in _MAIN_SHARES)]
-        unlike = [_unlike_when_turned(tree, points, option) for option in options]
-        unlike[0] *= _KEEPS_MIDDLE
-        return options[int(np.argmin(unlike))]
 
     def spread_points(self, count: int) -> Float[np.ndarray, "n 3"]:
         """Points spread evenly over the surface, the same ones every time; none where there is no surface."""
@@ -92,56 +68,18 @@ class ShapeAppearance:
         shares = np.stack([1 - u, u * (1 - v), u * v], axis=1)
         return np.asarray((shares[:, :, None] * triangles[face]).sum(axis=1)), face
 
-    @cached_property
-    def opaque_faces(self) -> Int[np.ndarray, "o"]:
-        """Faces that hide what is behind them and whose colour is known."""
-        return np.flatnonzero(self.face_rgba[:, 3] >= _OPAQUE)
-
-    @cached_property
-    def opaque_caster(self) -> ShapeCaster:
-        """Those faces alone, in their order: what is seen through glass."""
-        if len(self.opaque_faces) == len(self.faces):
-            return self.caster
-        opaque = trimesh.Trimesh(self.vertices, self.faces[self.opaque_faces], process=False)
-        opaque.remove_unreferenced_vertices()
-        return ShapeCaster(opaque)
-
-
-def _middle(xy: Float[np.ndarray, "n 2"], share: float) -> Float[np.ndarray, "2"]:
-    """The middle of the points' extent without the farthest ones."""
-    middle = np.median(xy, axis=0)
-    for _ in range(8):
-        away = np.linalg.norm(xy - middle, axis=1)
-        inner = xy[away <= np.quantile(away, share)]
-        middle = 0.5 * (inner.min(axis=0) + inner.max(axis=0))
-    return middle
-
-
-def _unlike_when_turned(tree: cKDTree, points: Float[np.ndarray, "n 3"], axis_xy: Float[np.ndarray, "2"]) -> float:
-    """How far points turned about an axis come to lie from the others, those of handles and the like left out."""
-    total = 0.0
-    for angle in np.deg2rad(np.arange(40.0, 360.0, 40.0)):
-        c, s = np.cos(angle), np.sin(angle)
-        moved = points.copy()
-        moved[:, :2] = (points[:, :2] - axis_xy) @ np.array([[c, s], [-s, c]]) + axis_xy
-        away = np.sort(tree.query(moved)[0])
-        total += float(away[: max(int(_MAIN_SHARES[0] * len(away)), 1)].mean())
-    return total
-
 
 def appearance_of(parts: trimesh.Scene) -> ShapeAppearance:
     """The triangles and colours of a shape's parts."""
     vertices, faces, colours, areas = [np.zeros((0, 3))], [np.zeros((0, 3), int)], [], []
-    of_faces, spreads = [np.zeros((0, 4), np.uint8)], [np.zeros(0, np.uint8)]
+    of_faces = [np.zeros((0, 4), np.uint8)]
     count = 0
     for node in parts.graph.nodes_geometry:
         T, name = parts.graph[node]
         mesh = parts.geometry[name]
         vertices.append(trimesh.transform_points(mesh.vertices, T))
         faces.append(np.asarray(mesh.faces) + count)
-        rgba, spread = face_colours(mesh)
-        of_faces.append(rgba)
-        spreads.append(spread)
+        of_faces.append(face_colours(mesh))
         count += len(mesh.vertices)
         colour = material_rgb(mesh.visual)
         if colour is not None and mesh.area > _MIN_AREA_M2:
@@ -153,21 +91,19 @@ def appearance_of(parts: trimesh.Scene) -> ShapeAppearance:
         np.array(colours, dtype=np.uint8).reshape(-1, 3),
         np.array(areas),
         np.concatenate(of_faces),
-        np.concatenate(spreads),
     )
 
 
-def face_colours(mesh: trimesh.Trimesh) -> tuple[UInt8[np.ndarray, "f 4"], UInt8[np.ndarray, "f"]]:
-    """`Look.face_rgba` and `Look.face_spread` of one part."""
+def face_colours(mesh: trimesh.Trimesh) -> UInt8[np.ndarray, "f 4"]:
+    """`ShapeAppearance.face_rgba` of one part."""
     visual: Any = mesh.visual
     count = len(mesh.faces)
-    spread = np.zeros(count, np.uint8)
     if visual is None or not visual.defined:
-        return np.zeros((count, 4), np.uint8), spread
+        return np.zeros((count, 4), np.uint8)
     if visual.kind == "face":
-        return np.asarray(visual.face_colors, dtype=np.uint8), spread
+        return np.asarray(visual.face_colors, dtype=np.uint8)
     if visual.kind == "vertex":
-        return np.rint(np.asarray(visual.vertex_colors, float)[mesh.faces].mean(axis=1)).astype(np.uint8), spread
+        return np.rint(np.asarray(visual.vertex_colors, float)[mesh.faces].mean(axis=1)).astype(np.uint8)
     material: Any = visual.material
     texture = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     whole = material_rgb(visual)
@@ -179,8 +115,7 @@ def face_colours(mesh: trimesh.Trimesh) -> tuple[UInt8[np.ndarray, "f 4"], UInt8
             np.ones(3) if factor is None else np.asarray(factor, float)[:3] / 255.0
         )
         rgb = np.clip(np.rint(255.0 * linear_to_srgb(light)), 0, 255)
-        spread = np.rint(pixels.std(axis=1).mean(axis=1)).astype(np.uint8)
-    return np.concatenate([rgb, np.full((count, 1), _opacity(material))], axis=1).astype(np.uint8), spread
+    return np.concatenate([rgb, np.full((count, 1), _opacity(material))], axis=1).astype(np.uint8)
 
 
 def _opacity(material: Any) -> int:
@@ -261,7 +196,6 @@ _STORED = {
     "colours": "colours_srgb",
     "areas": "areas_m2",
     "of_faces": "face_rgba",
-    "spread": "face_spread",
 }
 """Names of the arrays in a file, and the fields that they hold."""
 

@@ -17,7 +17,6 @@ from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.library.labels import is_named
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import NEVER_OPEN, SETS, category
-from diorama_core.pose.appearance_likelihood import AppearanceLikelihood, cells_for
 from diorama_core.pose.details import Details
 from diorama_core.pose.hypotheses import Anchor, anchor_of
 from diorama_core.pose.mask_observations import Evidence
@@ -40,8 +39,6 @@ class PosingTask:
     coarse: Evidence
     fine: Evidence
     measured: MeasuredObject | None
-    """Where depth was measured."""
-    close: AppearanceLikelihood | None
     """Where depth was measured."""
     details: Details | None
     """Where depth was measured: doubtful poses put a shape's edges and parts elsewhere."""
@@ -166,14 +163,8 @@ class _Surroundings:
         foot_m = foot_height_m(depth, item.mask, camera, self.settings.search) if held_by == "floor" else None
         measured = MeasuredObject.of(item.mask, fine, cuboid, anchor, self.walls, foot_m, self.settings)
         details = None if measured is None else Details.of(rgb, windows[1], self.settings.evidence)
-        close = None
-        if measured is not None:
-            near = observe_among(camera, self.items, centres, parents, i, cells_for(item.box, self.settings.evidence))
-            surface = measured_surface(depth, near, item.mask, self.noise, self.settings.evidence)
-            if surface is not None:
-                close = AppearanceLikelihood.of(rgb, item.mask, near, surface, cuboid.size_m, self.settings.evidence)
         carried = tuple(self.cuboids[j] for j, parent in enumerate(parents) if parent == i)
-        return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, close, details, self.settings.search)
+        return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, details, self.settings.search)
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,8 +177,6 @@ class PosedShape:
     """Disagreement with the picture, 0 to 1."""
     rank: float
     """By which the shapes of one object are ordered: a logarithm, higher is better."""
-    doubt: float = 0.0
-    """How nearly as well it fits when turned otherwise: 0 to 1."""
 
 
 def ordered_shapes(shapes: Sequence[PosedShape], ranks: Mapping[str, float]) -> tuple[PosedShape, ...]:
@@ -212,7 +201,7 @@ def candidates_of(
         Candidate(p.shape.id, p.shape.size_m, float(np.exp(ranks[p.shape.id] - top) * (1.0 - best.error)), p.pose)
         for p in ordered
     )
-    confidence = task.fine.confidence(best.error, task.cuboid.confidence) * (1.0 - 0.5 * best.doubt)
+    confidence = task.fine.confidence(best.error, task.cuboid.confidence)
     reasons = tuple(share for share in facings.shares if share.object_id == task.item.id)
     headings = facings.probabilities_of(task.item.id)
     return PosedCandidates(task.item.id, candidates, confidence, reasons, headings)

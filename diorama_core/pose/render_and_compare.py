@@ -15,7 +15,7 @@ from diorama_core.artefacts import DepthMap, DetectedObject, Inputs, ObjectGeome
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES, ShapeAppearance
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.catalogue import default_cache_dir
-from diorama_core.library.record import ROUND, Shape, ShapeLibrary
+from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.pose.hypotheses import Hypotheses, hypotheses_for, unlike_best
 from diorama_core.pose.limits import SizeLimits, sides_log_of
@@ -33,7 +33,6 @@ from diorama_core.pose.refine import BoxFit
 from diorama_core.pose.room_evidence import Trials, TriedShape, facing_room, powers, wall_samples
 from diorama_core.pose.sets import agreed_ranks, shared_scales
 from diorama_core.pose.settings import SETTINGS, PoseSettings
-from diorama_core.pose.turns import TurnSearch
 from diorama_core.processes import map_beside
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Pose
@@ -171,14 +170,10 @@ class RenderAndCompare:
             return tuple(self._with_levels(task, self._pose_by_outline(task, one)) for one in tried)
         order = sorted(range(len(tried)), key=lambda k: -float(tried[k].scores.max()))
         promising = set(order[: self.promising])
-        posed = [
+        return tuple(
             self._with_levels(task, self._pose_by_depth(task, task.measured, one, k in promising))
             for k, one in enumerate(tried)
-        ]
-        first = max(range(len(posed)), key=lambda k: posed[k].rank)
-        turned = self._turned_all_around(task, task.measured, tried[first], posed[first])
-        posed[first] = turned if turned is posed[first] else self._with_levels(task, turned)
-        return tuple(posed)
+        )
 
     def _with_levels(self, task: PosingTask, posed: PosedShape) -> PosedShape:
         """Ranked by the levels of what it carries, too."""
@@ -236,22 +231,6 @@ class RenderAndCompare:
             other = self._chosen(task, tried, Hypotheses(turned, nothing, nothing))
             poses, error, score = max((poses, error, score), other, key=lambda pair: pair[2])
         return PosedShape(tried.shape, _only(poses), error, self._rank(task, measured, tried, poses, error))
-
-    def _turned_all_around(
-        self, task: PosingTask, measured: MeasuredObject, tried: TriedShape, posed: PosedShape
-    ) -> PosedShape:
-        """The pose with its turn compared closely."""
-        if tried.shape.symmetry == ROUND or task.close is None:
-            return posed
-        start, fold = _batch(posed.pose), tried.shape.symmetry
-        appearance = self._appearance(tried.shape)
-        search = TurnSearch.of(
-            task.close, task.fine, measured, appearance, tried.limits, fold, start, self.settings.search
-        )
-        poses, doubt = search.best(start)
-        error = float(task.fine.errors(appearance.caster, poses)[0])
-        rank = self._rank(task, measured, tried, poses, error)
-        return PosedShape(tried.shape, _only(poses), error, rank, doubt)
 
     def _chosen(self, task: PosingTask, tried: TriedShape, start: Hypotheses) -> tuple[PoseBatch, float, float]:
         """The best of some poses and their refinements, with its error and score."""
@@ -318,10 +297,6 @@ class RenderAndCompare:
             appearance = self._appearance(tried.shape)
             log_likelihood = task.details.log_likelihood(appearance, task.fine.hits(appearance.caster, poses))
         return self.settings.search.retrieval_with_depth * tried.liked + similarity + stands + log_likelihood
-
-
-def _batch(pose: Pose) -> PoseBatch:
-    return PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None])
 
 
 def _only(poses: PoseBatch) -> Pose:

@@ -37,37 +37,6 @@ class PoseEvidenceSettings:
     strength_of_shapes: float = 3.0
     """As `_STRENGTH_WITH_DEPTH`, when shapes are compared: outline and depth show which one it is."""
     misfit_sigma: float = 0.2
-    min_side_cells: int = 16
-    max_side_cells: int = 48
-    cells_per_px: float = 1.16
-    tolerance_m: float = 0.004
-    tolerance_share: float = 0.04
-    """What depth may differ by, beside its noise, as a share of the object's middle extent."""
-    half_depth: float = 2.0
-    """Tolerances at which a cell says half of what it can."""
-    max_cost: float = 0.2
-    """Cost of one cell, as a logarithm of probability."""
-    colour_share: float = 0.6
-    """What a cell's colour says beside its depth."""
-    counted_cells: float = 800.0
-    """Cells of an object that count in full: neighbours do not err independently."""
-    light_sigma: float = 0.35
-    hue_sigma: float = 0.12
-    """Expected deviations of the logarithms of lightness and hue within one thing: shadows, reflections."""
-    half_colour: float = 4.0
-    robust: float = 4.0
-    tint_sigma: float = 0.3
-    slope_sigma: float = 0.5
-    """How coloured, and how much stronger from one side, light may be: standard deviations of logarithms."""
-    fitting_rounds: int = 3
-    darkest: float = 0.03
-    """Linear light below which a camera tells little."""
-    one_colour: float = 0.1
-    """Shapes whose colours vary less are not compared by colour."""
-    familiar_cells: float = 20.0
-    familiar_share: float = 0.1
-    """With few cells of known colour they are taken to agree as well as usual: as many cells at this share of the
-    cost."""
     normals_share: float = 0.4
     min_normals_share: float = 0.05
     """Below which normals are not worth their price."""
@@ -123,18 +92,6 @@ class PoseEvidenceSettings:
 class PoseSearchSettings:
     """Which poses of a shape are tried, and how they are refined and chosen."""
 
-    turn_steps: int = 24
-    """Turns compared in place, all around."""
-    turns_refined: int = 3
-    habit_strength: float = 1.4
-    """What objects usually do says this much more beside evidence that is summed: hardly a cupboard shows its back."""
-    min_likely: float = 0.05
-    stays: float = 1e-3
-    usual_misfit: float = 3.0
-    misfit_scale: float = 6.0
-    well_believed: float = 0.5
-    margin: float = 1.0
-    """By how much another turn must be likelier than the one that was found from afar."""
     thin_m: float = 0.1
     same_place: float = 0.15
     long_ratio: float = 1.25

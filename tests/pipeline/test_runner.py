@@ -70,8 +70,8 @@ class Edited(Sources):
     ("stage", "used", "not_used"),
     [
         (SingleViewMetrology(), "perception.metrology.rows", "export.gltf"),
-        (SingleViewMetrology(), "geometry.projection", "pose.turns"),
-        (MadeToMeasure(RenderAndCompare(built_in_library()), built_in_library()), "pose.turns", "layout.exact"),
+        (SingleViewMetrology(), "geometry.projection", "pose.hypotheses"),
+        (MadeToMeasure(RenderAndCompare(built_in_library()), built_in_library()), "pose.hypotheses", "layout.exact"),
     ],
 )
 def test_an_edit_of_what_a_stage_uses_changes_its_code_and_one_elsewhere_does_not(stage, used, not_used) -> None:

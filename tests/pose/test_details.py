@@ -77,8 +77,7 @@ def block(*colours: tuple[int, int, int, int]) -> ShapeAppearance:
     whole = trimesh.util.concatenate(layers)
     rgba = np.repeat(np.array(colours, np.uint8), 12, axis=0)
     vertices, faces = np.asarray(whole.vertices, np.float32), np.asarray(whole.faces, np.int32)
-    nothing = np.zeros(len(faces), np.uint8)
-    return ShapeAppearance(vertices, faces, rgba[::12, :3], np.ones(len(colours)), rgba, nothing)
+    return ShapeAppearance(vertices, faces, rgba[::12, :3], np.ones(len(colours)), rgba)
 
 
 def photo_of(shape: ShapeAppearance, brightness: float) -> tuple[np.ndarray, Observed]:

@@ -143,18 +143,17 @@ def test_degenerate_and_round_shapes_are_survived(shape_id: str, measured: bool)
     assert found[0].confidence < 0.8
 
 
-def test_a_shape_that_looks_the_same_from_behind_is_doubted() -> None:
+def test_a_shape_that_looks_the_same_from_behind_may_face_either_way() -> None:
     """The blocks of a table are mirror-symmetric; said to have one front, it fits both ways round."""
     room = Room(camera_at(), (standing("table", 0.0, 3.5, 25.0),), (0,))
-    twofold, one_front = LIBRARY, OneFront()
-    sure, unsure = (
-        RenderAndCompare(library).pose(
-            room.inputs, room.objects, room.geometry, room.depth(True), room.ranked(), Progress()
-        )[0]
-        for library in (twofold, one_front)
-    )
-    check_finite(unsure)
-    assert unsure.confidence < 0.7 * sure.confidence
+    result = RenderAndCompare(OneFront()).pose(
+        room.inputs, room.objects, room.geometry, room.depth(True), room.ranked(), Progress()
+    )[0]
+    check_finite(result)
+    headings = np.array(result.headings)
+    behind = np.roll(headings, len(headings) // 2)
+    assert headings.max() < 0.9
+    assert behind[int(headings.argmax())] > 0.1
 
 
 class OneFront(type(LIBRARY)):
