@@ -3,7 +3,7 @@
     python scripts/untested_modules.py
 
 A module has a test of its own when a test module (`tests/**/test_*.py`) imports it, a name from it, or a name that a
-package re-exports from it; or when the test that mirrors its path exists (`tests/pose/test_turns.py` for
+package re-exports from it; or when the test that mirrors its path exists (`tests/pose/test_limits.py` for
 `diorama_core/pose/limits.py`, `tests/app/web/test_html.py` for `diorama_app/web/html.py`). Imports that only a
 type checker sees do not count, neither do those of the helper modules beside the tests, nor those of `tests/e2e`,
 which drive the whole editor. Packages' `__init__` files need none; the designs of `diorama_core/library/furniture`
