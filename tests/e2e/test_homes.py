@@ -71,7 +71,7 @@ def test_rooms_are_shown_alone_without_a_change(flat: EditorPage) -> None:
     study.click()
     names = [flat.session.viewport.plane_name(r.floor) for r in before.rooms]
     drawn = (
-        "(name) => { let on = false; window.__viserMutable.nodeRefFromName[name].traverse("
+        "(name) => { let on = false; window.__viserMutable.nodeRefFromName[name]?.traverse("
         "(o) => { on = on || (o.isMesh && o.visible && o.material.type !== 'ShadowMaterial'); }); return on; }"
     )
 

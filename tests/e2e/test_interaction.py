@@ -226,10 +226,10 @@ def test_only_the_selection_is_optimised_compared_and_put_back(editor: EditorPag
     assert session.scene.object("chair_2").pose == before.object("chair_2").pose
     editor.button("Before").click()
     node = str(session.viewport.node_name("chair_1"))
-    editor.page.wait_for_function(f"window.__viserMutable.nodeRefFromName['{node}'].position.z > 0.6")
+    editor.page.wait_for_function(f"window.__viserMutable.nodeRefFromName['{node}']?.position.z > 0.6")
     editor.settle()
     editor.button("After").click()
-    editor.page.wait_for_function(f"window.__viserMutable.nodeRefFromName['{node}'].position.z < 0.6")
+    editor.page.wait_for_function(f"window.__viserMutable.nodeRefFromName['{node}']?.position.z < 0.6")
     editor.button("Revert").click()
     editor.until(lambda: session.scene is before, "put back")
     editor.page.get_by_title("Give the selected objects their alternative 2").click()

@@ -22,7 +22,7 @@ def test_a_measured_line_is_drawn_over_everything_and_snaps_to_corners(editor: E
         editor.settle()
     editor.until(lambda: length_m(editor.client.doing) is not None, "measured")
     assert length_m(editor.client.doing) == pytest.approx(np.linalg.norm(np.subtract(*corners[:2])), abs=1e-6)
-    over = """() => { const found = []; window.__viserMutable.nodeRefFromName['/tape/line'].traverse((o) =>
+    over = """() => { const found = []; window.__viserMutable.nodeRefFromName['/tape/line']?.traverse((o) =>
         o.isMesh && found.push([o.material.depthTest, o.renderOrder > 0])); return found; }"""
-    page.wait_for_function(f"(({over})()).every(([tests, last]) => !tests && last)")
+    page.wait_for_function(f"((all) => all.length > 0 && all.every(([tests, last]) => !tests && last))(({over})())")
     keep_picture(editor, "measured")

@@ -111,7 +111,7 @@ def test_an_optimisation_is_paused_gone_on_with_and_cancelled(
     assert session.scene is before
     node = session.viewport.node_name("chair_1")
     z = before.object("chair_1").pose.position[2]
-    editor.page.wait_for_function(f"Math.abs(window.__viserMutable.nodeRefFromName['{node}'].position.z - {z}) < 1e-4")
+    editor.page.wait_for_function(f"Math.abs(window.__viserMutable.nodeRefFromName['{node}']?.position.z - {z}) < 1e-4")
 
 
 def test_arrangements_are_mixed_by_what_is_selected(editor: EditorPage) -> None:
