@@ -76,7 +76,7 @@ def _may_be_bent_back(client: Client, inputs: Inputs) -> bool:
 class NoSceneCard:
     """What can be done where the view is empty, since the photo was put away before a scene was built.
 
-    It lies over the view whichever tab is in front: a page draws nothing that belongs to another tab.
+    It belongs to no tab: a page draws what belongs to one only once that tab was in front.
     """
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:

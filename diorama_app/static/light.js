@@ -85,7 +85,7 @@
   window.__dioTellSlider = tellNow;
   let moved = null;
   addEventListener("pointerdown", () => { down = true; }, true);
-  addEventListener("pointerup", () => { down = false; if (moved) rest(moved); }, true);
+  addEventListener("pointerup", () => { down = false; if (moved) rest(moved); moved = null; }, true);
   addEventListener("input", (event) => {
     const field = event.target;
     if (field.type !== "range" || !field.closest?.(".dio") || field.closest(".dio-light")) return;
