@@ -1,7 +1,7 @@
 """The start page: a photo, a description, an empty room, a file or an earlier project, or an example.
 
-It lies over the page when the program was started without a project, once in every tab of the browser, and whenever it
-is asked for. `static/start_page.js` asks for it, `static/tour.js` shows newcomers around afterwards.
+It lies over the page when the program was started without a project, in every tab of the browser until it was used, and
+whenever it is asked for. `static/start_page.js` asks for it, `static/tour.js` shows newcomers around afterwards.
 """
 
 from __future__ import annotations
@@ -34,8 +34,6 @@ LENGTHS = {
     N_("Height"): N_("Height of the room"),
 }
 RECENT = 4
-REMOVE = "document.getElementById('dio-start')?.remove()"
-"""What an earlier connection of the page left."""
 
 ABOUT_PHOTO = N_("Drop one here, or choose a file. You mark the furniture; Diorama builds the room.")
 
@@ -57,7 +55,6 @@ class StartPage:
         self._lengths_m = USUAL_ROOM_M
         self._refused: dict[str, str] = {}
         """What was typed as a length and is none, by field: it stays there to be corrected, and no room is made."""
-        gui.add_html(run_once(REMOVE))
         self._opened_over: Project | None = None
         self._photo_field = hidden_upload(gui, client, _("Start with a photo"), take_photo)
         self._file_field = hidden_upload(gui, client, _("Start with a file"), self._take_file)
@@ -108,7 +105,9 @@ class StartPage:
     def _do(self, action: Action) -> None:
         client = self._client
         if action.do == "begin":
-            if not self._open:
+            if self._open:  # the page does not have it, or it would not ask
+                self._html.show(self._page(), again=True)
+            else:
                 self.open()
         elif action.do == "close":
             self.close()

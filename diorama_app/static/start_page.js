@@ -1,25 +1,27 @@
-// The start page opens by itself once in a tab, where the program was started without a project. Its labels that stand for
-// file fields are pressed by keys, too, and newcomers are shown around when it closes. The focus stays in it, as it does in
-// the grid of all projects.
+// The start page opens by itself in a tab until somebody has done something there, where the program was started without a
+// project: what a lost connection took away, or never brought, is asked for again. Its labels that stand for file fields are
+// pressed by keys, too, and newcomers are shown around when it closes. The focus stays in it, as it does in the grid of all
+// projects.
 (() => {
   const BEGUN = "diorama-begun", WANTED = "diorama-tour-wanted";
   const note = (key, value) => { try { sessionStorage.setItem(key, value); } catch { return; } };
   const noted = (key) => { try { return sessionStorage.getItem(key); } catch { return "not remembered"; } };
   const OVER = "#dio-start, #dio-projects";
-  let open = false;
+  const PATIENCE_MS = 3000; // an answer that takes longer is not coming
+  let open = false, asked = -Infinity;
   setInterval(() => {
-    const opener = document.getElementById("dio-start-open");
-    if (opener?.dataset.auto !== undefined && !noted(BEGUN) && document.documentElement.classList.contains("dio-ready")) {
-      note(BEGUN, "yes");
+    const opener = document.getElementById("dio-start-open"), page = document.querySelector(OVER), now = performance.now();
+    const wanted = opener?.dataset.auto !== undefined && !page && !noted(BEGUN);
+    if (wanted && now - asked > PATIENCE_MS && document.documentElement.classList.contains("dio-ready")) {
+      asked = now;
       opener.click();
     }
-    const page = document.querySelector(OVER);
-    if (page && !open) {
-      note(BEGUN, "yes");
-      page.querySelector(".choose, [type=search]")?.focus();
-    }
+    if (page && !open) page.querySelector(".choose, [type=search]")?.focus();
     open = page !== null;
   }, 200);
+  for (const done of ["pointerdown", "keydown", "click", "drop"]) {
+    addEventListener(done, (event) => event.isTrusted && document.querySelector(OVER) && note(BEGUN, "yes"), true);
+  }
   addEventListener("click", (event) => {
     const chosen = event.target.closest?.("#dio-start [data-do]")?.dataset.do;
     if (["example", "empty", "close"].includes(chosen)) note(WANTED, chosen === "close" ? "here" : location.search);

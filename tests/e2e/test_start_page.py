@@ -135,6 +135,29 @@ def test_a_server_with_a_project_shows_it_at_once_and_the_start_page_when_asked(
 
 
 @pytest.mark.slow
+def test_a_connection_that_comes_again_brings_the_start_page_back_until_it_was_used(
+    context: BrowserContext, serve: Callable[..., Running]
+) -> None:
+    port = lasting_port()
+    running = serve(library=PlainLibrary(), port=port)
+    page = EditorPage.open(context, running, newcomer=True).page
+    begun, lost = page.locator("#dio-start"), page.locator("#dio-lost")
+    expect(begun).to_be_visible()
+    for close, count in ((False, 1), (True, 0)):
+        if close:
+            page.keyboard.press("Escape")
+            expect(begun).to_have_count(0)
+        running.stop()
+        expect(lost).to_be_visible(timeout=15_000)
+        page.evaluate("document.getElementById('dio-start')?.remove()")
+        running = serve(library=PlainLibrary(), port=port)
+        expect(lost).to_be_hidden(timeout=30_000)
+        page.wait_for_timeout(4000)
+        expect(begun).to_have_count(count)
+    page.close()
+
+
+@pytest.mark.slow
 def test_the_tour_waits_while_somebody_types(context, serve: Callable[..., Running]) -> None:
     editor = EditorPage.open(context, serve())
     page, tour = editor.page, editor.page.get_by_role("dialog", name="Tour")
