@@ -32,7 +32,7 @@ from diorama_core.library.furniture.roles import with_roles
 from diorama_core.library.furniture.solids import Solid
 from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
 from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
-from diorama_core.library.taxonomy import column
+from diorama_core.library.taxonomy import carries_things, column
 
 GLB_VERSION = 1
 """Version of the models' files: raise it when what `_glb` writes for the same parts changes."""
@@ -184,7 +184,8 @@ class BuiltInLibrary:
 
     def _measure(self, record: Shape) -> tuple[SupportSurface, ...]:
         def measure() -> bytes:
-            return _surfaces_to_json(support_surfaces(self.mesh(record.id)))
+            carries = carries_things(record.category)
+            return _surfaces_to_json(support_surfaces(self.mesh(record.id), carries=carries))
 
         return derive(self._surfaces_path(record), measure, _surfaces_from_json)
 

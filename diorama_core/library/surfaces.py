@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
+import shapely
 import trimesh
 from jaxtyping import Bool, Float, Int
+from scipy.ndimage import distance_transform_edt
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
@@ -22,7 +24,7 @@ from diorama_core.geometry.planes import signed_area
 from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.library.record import SupportSurface
 
-SURFACES_VERSION = 3
+SURFACES_VERSION = 4
 """Raise it when other surfaces are found on the same shape, so that those on disk are measured again."""
 MINIMUM_UP = 0.9
 """Cosine of the steepest slope that still carries objects."""
@@ -34,6 +36,11 @@ WALL_M = 0.025
 """What rises this far above a shelf between two places on it parts them."""
 MINIMUM_FILL = 0.55
 """A region that fills less of its convex outline than this is a rim or a frame, not a surface."""
+
+HOLE_M = 0.1
+"""Into a wider hole in a surface things fall, and through a wider notch in its side."""
+LEDGE_M = 0.05
+"""A narrower strip beside a hole carries nothing."""
 
 SEAM_STEP_M = 0.05
 """Open surfaces whose heights differ by less may be joined."""
@@ -56,13 +63,14 @@ class _Spots:
     clearance: Float[np.ndarray, "s"]
 
 
-def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportSurface, ...]:
+def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72, *, carries: bool = False) -> tuple[SupportSurface, ...]:
     """Support surfaces of a shape in its canonical frame, highest first.
 
     Args:
         mesh: Closed solids, possibly overlapping, metres, +Z up.
         lattice: Rays along the longer horizontal side.
-
+        carries: Whether people put hard things on it rather than sit on it. Then a top with a hole or a notch is
+            several surfaces round that, and what is sunk into it is none: a basin.
     """
     low, high = mesh.bounds
     extent = high - low
@@ -77,12 +85,16 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
     foot = float(low[2]) + (0.04 if extent[2] > 0.3 else 0.0)
     half_footprint = 0.5 * extent[0] * extent[1]
     low_area = float((spots.z < foot).sum()) * cell_m**2
-    surfaces = []
+    surfaces: list[SupportSurface] = []
+    ledges: list[SupportSurface] = []
     for region in _regions(spots, caster):
         if np.median(spots.z[region]) < foot and low_area < half_footprint:
             continue  # a base plate, not a surface
         clearance = spots.clearance[region]
         if np.median(clearance) < blocked_below or len(region) * cell_m**2 < minimum_area:
+            continue
+        if carries and (pieces := _round_a_hole(spots, region)):
+            ledges += [_surface(spots, piece, _outline(spots, piece)) for piece in pieces]
             continue
         outline = _outline(spots, region)
         if len(region) * cell_m**2 < MINIMUM_FILL * abs(signed_area(outline)) or _breadth(outline) < narrowest:
@@ -90,7 +102,9 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72) -> tuple[SupportS
         surface = _surface(spots, region, outline)
         if not _is_enclosed(surface, caster):
             surfaces.append(surface)
-    surfaces = _join(surfaces)
+    if ledges:
+        surfaces = [s for s in surfaces if s.interior or not _is_walled_in(s, caster)]
+    surfaces = _join(surfaces) + ledges
     return tuple(sorted(surfaces, key=lambda s: (-round(s.height_m, 3), *np.round(s.polygon.mean(axis=0)[:2], 3))))
 
 
@@ -203,6 +217,41 @@ def _outline(spots: _Spots, region: Int[np.ndarray, "k"]) -> Float[np.ndarray, "
     return corners[ConvexHull(corners).vertices] * spots.cell_m + spots.origin
 
 
+def _round_a_hole(spots: _Spots, region: Int[np.ndarray, "k"]) -> list[Int[np.ndarray, "_"]]:
+    """The open strips round the hole of a region, largest first; none where it has no hole or nothing wide round it."""
+    cells = spots.cell[region] - spots.cell[region].min(axis=0)
+    left = np.zeros(cells.max(axis=0) + 1, dtype=bool)
+    left[tuple(cells.T)] = True
+    outline = shapely.convex_hull(shapely.multipoints(cells))
+    inside = shapely.contains_xy(outline, *np.indices(left.shape))
+    if 2.0 * float(distance_transform_edt(np.pad(inside & ~left, 1)).max()) * spots.cell_m < HOLE_M:
+        return []
+    pieces = []
+    while True:
+        low, high = _largest_rectangle(left)
+        if (high - low).min() * spots.cell_m < LEDGE_M:
+            return pieces
+        left[low[0] : high[0], low[1] : high[1]] = False
+        piece = region[((cells >= low) & (cells < high)).all(axis=1)]
+        if np.isinf(np.median(spots.clearance[piece])):
+            pieces.append(piece)
+
+
+def _largest_rectangle(full: Bool[np.ndarray, "i j"]) -> tuple[Int[np.ndarray, "2"], Int[np.ndarray, "2"]]:
+    """The first cell of the largest rectangle of true cells, and the one past its last; both 0 where all are false."""
+    best, low, high = 0, np.zeros(2, dtype=int), np.zeros(2, dtype=int)
+    above = np.zeros(full.shape[1], dtype=int)
+    for i, row in enumerate(full):
+        above = np.where(row, above + 1, 0)
+        for height in np.unique(above[above > 0]):
+            ends = np.flatnonzero(np.diff(np.concatenate([[0], above >= height, [0]])))
+            start, end = max(ends.reshape(-1, 2).tolist(), key=lambda run: run[1] - run[0])
+            if height * (end - start) > best:
+                best = height * (end - start)
+                low, high = np.array([i + 1 - height, start]), np.array([i + 1, end])
+    return low, high
+
+
 def _breadth(outline: Float[np.ndarray, "n 2"]) -> float:
     """Smallest distance between parallel lines that hold a convex outline."""
     edges = np.roll(outline, -1, axis=0) - outline
@@ -250,8 +299,12 @@ def _surface(spots: _Spots, region: Int[np.ndarray, "k"], outline: Float[np.ndar
 
 def _is_enclosed(surface: SupportSurface, caster: RayScene) -> bool:
     """Whether a surface has a ceiling and walls on all four sides: nobody puts things into a closed cupboard."""
-    if not np.isfinite(surface.clearance_m):
-        return False
-    middle = [*surface.polygon[:, :2].mean(axis=0), surface.height_m + 0.5 * surface.clearance_m]
+    return bool(np.isfinite(surface.clearance_m)) and _is_walled_in(surface, caster)
+
+
+def _is_walled_in(surface: SupportSurface, caster: RayScene) -> bool:
+    """Whether a surface has walls on all four sides, halfway to what is above it or as high as a seam."""
+    above = min(0.5 * surface.clearance_m, SEAM_STEP_M)
+    middle = [*surface.polygon[:, :2].mean(axis=0), surface.height_m + above]
     ahead = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
     return bool(caster.is_occluded(np.column_stack([np.tile(middle, (4, 1)), ahead]).astype(np.float32)).all())

@@ -116,6 +116,12 @@ def lies_on_furniture(name: str) -> bool:
     return category(name).mount == "surface" or name in PORTABLE
 
 
+def carries_things(name: str) -> bool:
+    """Whether people put things on what has this label rather than sit on it."""
+    kind = resolve(name).category
+    return kind.supports_objects and kind.seat_height_m is None
+
+
 def is_furniture(name: str) -> bool:
     """Whether people call a category furniture: it stands on the floor, and is no lamp, plant, basket or rug."""
     return category(name).mount == "floor" and name not in PORTABLE | LAMPS and broad(name) != "rug"

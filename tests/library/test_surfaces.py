@@ -109,3 +109,26 @@ def test_a_worktop_with_a_lower_piece_between_is_as_high_as_its_higher_ends() ->
     ends = [block((0.6, 0.4, 0.04), (0, s * 0.45, 0.88)) for s in (1, -1)]
     (top,) = support_surfaces(trimesh.util.concatenate([*ends, block((0.6, 0.5, 0.03), (0, 0, 0.875))]))
     assert top.height_m == pytest.approx(0.9, abs=1e-3)
+
+
+def test_what_is_put_on_a_basin_stands_on_its_rim() -> None:
+    """A counter of 1.0 x 0.5 m with a basin: strips of 0.3 m beside it, what is in it and thinner strips are no place."""
+    counter = block((0.5, 1.0, 0.2), (0, 0, 0.8))
+    basin = counter.difference(block((0.42, 0.4, 0.2), (0, 0, 0.85)))
+    strips = support_surfaces(basin, carries=True)
+    assert sorted(round(float(s.polygon[:, 1].mean()), 2) for s in strips) == [-0.35, 0.35]
+    assert all(s.height_m == pytest.approx(0.9, abs=1e-3) for s in strips)
+    assert all(area(s) == pytest.approx(0.15, rel=0.08) for s in strips)
+
+
+def test_a_corner_desk_has_nothing_over_its_notch() -> None:
+    desk = trimesh.util.concatenate([block((0.6, 1.6, 0.03), (-0.3, 0, 0.7)), block((0.6, 0.6, 0.03), (0.3, 0.5, 0.7))])
+    tops = support_surfaces(desk, carries=True)
+    assert len(tops) == 2
+    assert sum(map(area, tops)) == pytest.approx(0.96 + 0.36, rel=0.04)
+
+
+def test_the_inside_of_a_tray_stays_a_place() -> None:
+    tray = block((0.4, 0.6, 0.05), (0, 0, 0)).difference(block((0.36, 0.56, 0.05), (0, 0, 0.02)))
+    (inside,) = support_surfaces(tray, carries=True)
+    assert inside.height_m == pytest.approx(-0.005, abs=1e-3)

@@ -23,9 +23,9 @@ from diorama_core.io.assets import asset
 from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import read_arrays, write_arrays
 from diorama_core.layout.problem.clear_places import clear_of_places
-from diorama_core.library import taxonomy
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.taxonomy import carries_things
 
 Parts = tuple[ConvexPart, ...]
 NAMES = ("keys", "sizes", "counts", "vertices", "normals", "edges")
@@ -97,17 +97,12 @@ def parts_of_shape(library: ShapeLibrary, shape: Shape) -> Parts:
     """
     key = shape.content_hash
     mesh = partial(library.mesh, shape.id)
+    carries = carries_things(shape.category)
     if not key:
-        return clear_of_places(convex_parts(mesh()), shape.surfaces, mesh, carries=_carries(shape))
+        return clear_of_places(convex_parts(mesh()), shape.surfaces, mesh, carries=carries)
     return _CACHE.get(
-        key, lambda: clear_of_places(_known(key) or _made(key, mesh()), shape.surfaces, mesh, carries=_carries(shape))
+        key, lambda: clear_of_places(_known(key) or _made(key, mesh()), shape.surfaces, mesh, carries=carries)
     )
-
-
-def _carries(shape: Shape) -> bool:
-    """Whether people put things on a shape of its kind, and nobody sits there."""
-    kind = taxonomy.resolve(shape.category).category
-    return kind.supports_objects and kind.seat_height_m is None
 
 
 def parts_of_solids(vertices: Float[np.ndarray, "v 3"], faces: Int[np.ndarray, "f 3"]) -> Parts:

@@ -29,6 +29,7 @@ from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.part_notes import PartNotes, notes_of, transform
 from diorama_core.library.record import Guess, Shape, ShapeLibrary, SymmetryFold, usual_contact_faces
 from diorama_core.library.surfaces import support_surfaces
+from diorama_core.library.taxonomy import carries_things
 
 Painter = Callable[[ShapeLibrary, str], bytes]
 """Makes the PNG thumbnail of one shape of a library; rendering lives above the library."""
@@ -217,7 +218,7 @@ def pack_shape(
         mass_kg=round(max(BULK_DENSITY.get(record.category, 100.0) * x * y * z, 0.01), 2),
         content_hash=hashlib.sha256(glb).hexdigest()[:24],
         triangles=len(whole.faces),
-        surfaces=support_surfaces(whole),
+        surfaces=support_surfaces(whole, carries=carries_things(record.category)),
     )
     picture = None if painter is None else painter(LoneShape(record, scene, whole, glb), record.id)
     return Ingested(record, glb, picture, key, warnings)
