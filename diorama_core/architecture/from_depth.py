@@ -18,6 +18,7 @@ from diorama_core.architecture.walls.wall_candidates import find_walls, toleranc
 from diorama_core.architecture.walls.wall_path import heading
 from diorama_core.architecture.walls.wall_sequence import WallPiece, outline
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
+from diorama_core.geometry.openings import DOOR
 from diorama_core.progress import Progress
 from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture, Camera
@@ -48,7 +49,8 @@ class PlanarRoom:
         if inputs.depth_m is None:
             raise ValueError("PlanarRoom needs measured depth; use PhotoRoom for a photo alone")
         progress.report(0.0, "Looking for planes in the measured depth")
-        solid = tuple(o for o in objects if not is_passage(o))
+        # A door shows where its wall is, also where nothing else of that is seen.
+        solid = tuple(o for o in objects if not is_passage(o) and o.category != DOOR)
         hidden = object_pixels((inputs.photo.height, inputs.photo.width), solid)
         surface = measured_surface(inputs.depth_m, geometry.camera, hidden, self.settings)
         ceilings = find_ceilings(surface)

@@ -51,6 +51,25 @@ def test_a_tall_screen_is_not_a_wall():
     assert matched(walls, (0, -1, 0), -4.5, 2.0, 0.05)
 
 
+def test_a_door_shows_the_wall_that_it_fills():
+    """An alcove 1 m wide ends in a door that leaves nothing of its wall to see."""
+    alcove = (
+        floor((-2, -2), (2, -2), (2, 4), (-2, 4)),
+        floor((-0.5, 4), (0.5, 4), (0.5, 5.5), (-0.5, 5.5)),
+        wall("left", (-2, -2), (-2, 4), 2.4),
+        wall("far left", (-2, 4), (-0.5, 4), 2.4),
+        wall("side left", (-0.5, 4), (-0.5, 5.5), 2.4),
+        wall("side right", (0.5, 5.5), (0.5, 4), 2.4),
+        wall("far right", (0.5, 4), (2, 4), 2.4),
+        wall("right", (2, 4), (2, -2), 2.4),
+    )
+    door = cuboid("door", (0.0, 5.48, 0.0), (0.05, 1.0, 2.4), yaw_deg=-90)
+    shot = shoot(look(0, 8), alcove, (door,))
+    shot = replace(shot, objects=tuple(replace(o, label="door", category="door") for o in shot.objects))
+    walls = reconstruct(shot, with_masks=True).architecture.by_role("wall")
+    assert [w for w in matched(walls, (0, -1, 0), -5.46, 2.0, 0.05) if w.confidence > 0.5]
+
+
 def test_walls_chain_from_left_to_right_and_face_the_camera():
     shot = shoot(look(10, 12), L_SHAPE)
     architecture = reconstruct(shot).architecture
