@@ -102,12 +102,12 @@ def _candidate(item: SceneObject, shape_id: str) -> Candidate | None:
 
 def _equally_large(scene: Scene) -> Scene:
     """One scale for the objects of a set where their sizes agree; each keeps its base, what is mounted its middle."""
-    from diorama_core.pose.sets import shared_scales  # Open3D and OpenCV; the editor opens without them
+    from diorama_core.pose.sets import equalise_scales  # Open3D and OpenCV; the editor opens without them
 
     free = [o for o in scene.objects if not o.locked]
     if not free:
         return scene
-    scales = shared_scales(
+    scales = equalise_scales(
         [o.category for o in free],
         [o.shape_id for o in free],
         np.array([o.pose.scale for o in free]),
