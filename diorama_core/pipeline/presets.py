@@ -48,7 +48,7 @@ from diorama_core.perception.foundation.proposals import (
     JoinedDetection,
     OwnDetection,
     clickable,
-    clicked_box,
+    find_clicked_box,
     names_of,
 )
 from diorama_core.perception.language.client import LmmSettings
@@ -227,7 +227,7 @@ def _find_clicked_boxes(
 ) -> Sequence[Box | None]:
     known = () if finder is None else finder.detect(photo, (), Progress())
     boxes = clickable(own_recogniser(), photo, known)
-    return [clicked_box(boxes, float(x), float(y)) for x, y in pixels]
+    return [find_clicked_box(boxes, float(x), float(y)) for x, y in pixels]
 
 
 def propose_boxes(

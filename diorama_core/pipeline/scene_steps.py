@@ -72,7 +72,7 @@ def illuminant(
 
 def white_balance_inputs(inputs: Inputs, light: Illuminant) -> Inputs:
     """The inputs with the photo as white light would have it."""
-    return replace(inputs, photo=replace(inputs.photo, rgb=light.balanced(inputs.photo.rgb)))
+    return replace(inputs, photo=replace(inputs.photo, rgb=light.white_balance(inputs.photo.rgb)))
 
 
 def white_balance_room(room: ArchitectureEstimate, light: Illuminant) -> ArchitectureEstimate:
