@@ -107,10 +107,10 @@ def _try(store: ModelStore, network_ids: Sequence[str]) -> None:
     if all(network(n).has_checksums for n in network_ids):
         return
     from diorama_app.projects.example import example_inputs
-    from diorama_core.pipeline.network_check import rejected
+    from diorama_core.pipeline.network_check import delete_failing_networks
 
     with progress_bar() as progress:
-        failed = rejected(store, network_ids, example_inputs().inputs, progress)
+        failed = delete_failing_networks(store, network_ids, example_inputs().inputs, progress)
     if failed:
         damaged = "; ".join(f"{c.network.title}: {c.words}" for c in failed)
         raise UnavailableError(f"these files were damaged or changed, so they were deleted: {damaged}")

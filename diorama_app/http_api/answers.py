@@ -175,13 +175,13 @@ def png(room: diorama.Reconstruction, view: str, size: tuple[int, int], *, ids: 
     """
     picture = diorama.render(room, view=view, size=size)
     if ids and view != "planes":
-        from diorama_core.perception.language.marks import marked
+        from diorama_core.perception.language.marks import draw_marks
         from diorama_core.render.picture import instances_seen
 
         seen = instances_seen(room.scene, room.library, view=view, size=size)
         shown = {o.id: seen == k for k, o in enumerate(room.scene.objects)}
         shown = {name: mask for name, mask in shown.items() if mask.any()}
-        picture = marked(picture, list(shown.values()), list(shown))
+        picture = draw_marks(picture, list(shown.values()), list(shown))
     content = io.BytesIO()
     Image.fromarray(picture).save(content, "PNG")
     return content.getvalue()

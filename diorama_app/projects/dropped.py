@@ -19,7 +19,7 @@ from diorama_core.errors import DioramaError, InputError
 from diorama_core.importing.array_clouds import is_array_cloud
 from diorama_core.io.contained import content_of, unpack
 from diorama_core.io.file_heads import FileHead, head_of, what_else
-from diorama_core.perception.inputs.sorting import Recognised, Sort, recognised, recognised_alone
+from diorama_core.perception.inputs.sorting import Recognised, Sort, recognise, recognise_alone
 from diorama_core.progress import Progress
 
 if TYPE_CHECKING:
@@ -148,7 +148,7 @@ def _file_readings(path: Path, name: str, photo_size: tuple[int, int] | None) ->
     if solid and not head.text:
         return solid
     try:
-        readings = recognised(path.read_bytes(), name, photo_size)
+        readings = recognise(path.read_bytes(), name, photo_size)
     except InputError as error:
         solid = solid or (() if flat else _solid_readings(path, head))
         other = what_else(head)
@@ -273,7 +273,7 @@ def _classify_photos(folder: Path, name: str, names: Sequence[str], photo_size: 
 
 def _alone(path: Path) -> tuple[Recognised, ...]:
     """What a file of several is: a picture is depth or masks where it looks so by itself."""
-    readings = recognised_alone(path.read_bytes(), path.name)
+    readings = recognise_alone(path.read_bytes(), path.name)
     words = f"{path.parent.name} {path.stem}".lower()
     hinted = [what for what in readings if what.sort.removesuffix("s") in words]
     return tuple(dict.fromkeys((*hinted, *readings)))

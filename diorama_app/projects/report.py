@@ -10,7 +10,7 @@ from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import ProjectError
 from diorama_core.io.atomic import write_document
 from diorama_core.io.text import number_of
-from diorama_core.perception.foundation.proposals import JoinedDetection, OwnDetection, left_out
+from diorama_core.perception.foundation.proposals import JoinedDetection, OwnDetection, count_left_out
 from diorama_core.pipeline.arrangements import arrangement, arrangement_count
 from diorama_core.pipeline.findings import camera_sentence
 from diorama_core.pipeline.plan import evaluate
@@ -66,7 +66,7 @@ def build_report(room: Reconstruction, scenes: tuple[str, ...]) -> dict[str, Any
     detection = None if room.stages is None else room.stages.detection
     unsure = {}
     if built is not None and isinstance(detection, OwnDetection | JoinedDetection):
-        unsure = {"left_out": left_out(detection, built.inputs.photo)}
+        unsure = {"left_out": count_left_out(detection, built.inputs.photo)}
     camera = None
     if built is not None:
         sentence = camera_sentence(built.camera, built.inputs.depth_source)

@@ -95,9 +95,9 @@ def _try(fetched: Sequence[Network], progress: Progress) -> None:
     if all(n.has_checksums for n in fetched):
         return
     from diorama_app.projects.example import example_inputs
-    from diorama_core.pipeline.network_check import rejected
+    from diorama_core.pipeline.network_check import delete_failing_networks
 
-    failed = rejected(ModelStore.default(), [n.id for n in fetched], example_inputs().inputs, progress)
+    failed = delete_failing_networks(ModelStore.default(), [n.id for n in fetched], example_inputs().inputs, progress)
     if failed:
         damaged = "; ".join(f"{c.network.title}: {c.words}" for c in failed)
         raise UnavailableError(_("damaged or changed files were deleted: {files}").format(files=damaged))

@@ -160,11 +160,11 @@ class Suggestions:
 
     def _rank(self, boxes: Sequence[Box]) -> list[tuple[str, ...]]:
         from diorama_core.models.recogniser import own_recogniser
-        from diorama_core.perception.foundation.proposals import ranked_names
+        from diorama_core.perception.foundation.proposals import rank_names
 
         seen, corners = np.stack([self._seen[box] for box in boxes]), np.array(boxes, dtype=float)
         known = self._known or ()
-        return [names[:COUNT] for names in ranked_names(own_recogniser().categories, seen, corners, known)]
+        return [names[:COUNT] for names in rank_names(own_recogniser().categories, seen, corners, known)]
 
     def _everyday(self) -> tuple[LabelledBox, ...]:
         """What the network for everyday objects finds; nothing without it, or where it fails."""
@@ -182,12 +182,12 @@ class Suggestions:
 
     def _propose(self) -> None:
         from diorama_core.models.recogniser import own_recogniser
-        from diorama_core.perception.foundation.proposals import LIKELY, MOST_SHOWN, OwnDetection, joined_boxes
+        from diorama_core.perception.foundation.proposals import LIKELY, MOST_SHOWN, OwnDetection, join_boxes
         from diorama_core.progress import Progress
 
         known = self._everyday()
         detected = OwnDetection(own_recogniser(), LIKELY, MOST_SHOWN).detect(self.photo, (), Progress())
-        self._boxes = joined_boxes(known, detected)
+        self._boxes = join_boxes(known, detected)
 
     def _trace(self, box: Box) -> None:
         from diorama_core.perception.masks import EmbeddedMasks
@@ -198,13 +198,13 @@ class Suggestions:
 
     def _click(self, x: float, y: float, marked: Sequence[Box]) -> LabelledBox | None:
         from diorama_core.models.recogniser import own_recogniser
-        from diorama_core.perception.foundation.proposals import clickable, clicked_box
+        from diorama_core.perception.foundation.proposals import clickable, find_clicked_box
 
         if not has_own_recogniser():
             return None
         if self._clickable is None:
             self._clickable = clickable(own_recogniser(), self.photo, self._everyday())
-        box = clicked_box(drop_marked(self._clickable, x, y, marked), x, y)
+        box = find_clicked_box(drop_marked(self._clickable, x, y, marked), x, y)
         if box is None:
             return None
         name = self._likeliest(box, marked)

@@ -12,7 +12,7 @@ from jaxtyping import Bool
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.labels import understand_label
-from diorama_core.perception.inputs.boxes.agreement import turned_box
+from diorama_core.perception.inputs.boxes.agreement import rotate_box_180
 
 SAME_BOX_IOU = 0.98
 """Boxes that overlap so much are the same one, written with fewer digits."""
@@ -93,7 +93,7 @@ def boxes_json(boxes: Sequence[LabelledBox], photo: Photo) -> bytes:
         from diorama_core.multiview.plumb_lines import box_before_straightening  # the editor opens without it
 
         boxes = [box_before_straightening(b, photo) for b in boxes]
-    boxes = [turned_box(b, photo) for b in boxes] if photo.half_turned else boxes
+    boxes = [rotate_box_180(b, photo) for b in boxes] if photo.half_turned else boxes
     sx, sy = photo.original_size[0] / photo.width, photo.original_size[1] / photo.height
     left, top = photo.offset or (0, 0)
     corners = [(b, left + sx * np.array(b.box[::2]), top + sy * np.array(b.box[1::2])) for b in boxes]

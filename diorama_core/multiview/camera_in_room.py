@@ -150,7 +150,7 @@ class _Search:
         self._things = measured
         extent = np.tile(boxes.box_px[:, 2:] - boxes.box_px[:, :2], 2)
         self._sigma = np.hypot(boxes.edge_sigma_px, SETTINGS.cuboid_sigma * extent)
-        self._short = np.array([boxes.hidden(i) for i in range(len(boxes))]).reshape(-1, 4) | boxes.truncated
+        self._short = np.array([boxes.is_hidden(i) for i in range(len(boxes))]).reshape(-1, 4) | boxes.truncated
 
     def finalists(self, floor: Polygon, progress: Progress) -> list[Camera]:
         """The best of all places on the floor and all headings, no two of them alike."""

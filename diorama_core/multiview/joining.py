@@ -207,7 +207,7 @@ def shown(photo: RoomPhoto, box: int) -> float:
     """How well a photo shows an object: the area of its box, less where edges are hidden or cut."""
     seen = photo.boxes.observations
     x1, y1, x2, y2 = seen.box_px[box]
-    unseen = int((seen.hidden(box) | seen.truncated[box]).sum())
+    unseen = int((seen.is_hidden(box) | seen.truncated[box]).sum())
     k = photo.boxes.camera.intrinsics
     return float((x2 - x1) * (y2 - y1) / (k.width * k.height)) * SETTINGS.unseen_edge**unseen
 

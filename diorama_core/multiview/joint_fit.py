@@ -22,7 +22,7 @@ from diorama_core.library.taxonomy import Category
 from diorama_core.multiview.settings import SETTINGS
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode, size_modes
-from diorama_core.perception.metrology.problem import UNTOLD, Problems, View, stacked, values
+from diorama_core.perception.metrology.problem import UNTOLD, Problems, View, concatenate_problems, values
 from diorama_core.perception.metrology.rows import row
 from diorama_core.scene.types import Camera
 
@@ -147,7 +147,7 @@ class _Joint:
                 )
                 for mode in modes
             ]
-            self._views.append((photo.camera, view, stacked(rows)))
+            self._views.append((photo.camera, view, concatenate_problems(rows)))
         self._log_size = np.array([m.log_size for m in modes])
         self._sigma = np.array([m.sigma for m in modes])
         self._whitening = np.array([m.whitening for m in modes])
@@ -172,7 +172,7 @@ class _Joint:
         chosen = np.tile(np.arange(len(self._log_size)), repeats)
         parts = []
         for camera, view, problems in self._views:
-            rows = problems.rows(chosen).changed(yaw_rad=unknowns[:, 6])
+            rows = problems.rows(chosen).with_columns(yaw_rad=unknowns[:, 6])
             edges = values(_as_seen(unknowns, camera, view), rows, view).residuals[:, :4]
             behind = (rows.hidden_px > 0) & (edges > 0)
             parts.append(np.where(behind, _bounded(edges, SETTINGS.max_hidden), edges))

@@ -64,7 +64,7 @@ def _picture(scene: Scene, photo: PlacedPicture, world: World, standing: Collect
     marked = {o.id for o in photo.objects}
     strangers = [k for k, o in enumerate(scene.objects) if o.id not in marked and not o.hidden]
     unmarked = silhouettes(world, photo.camera, strangers)
-    rgb = illuminant.balanced(photo.inputs.photo.rgb)
+    rgb = illuminant.white_balance(photo.inputs.photo.rgb)
     return RoomPicture(rgb, photo.objects, photo.camera, standing, photo.filler, unmarked)
 
 

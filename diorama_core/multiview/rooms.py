@@ -50,7 +50,7 @@ from diorama_core.pipeline.given_stages import (
     GivenCuboids,
     GivenObjects,
     GivenRoom,
-    given_camera,
+    exact_camera_estimate,
 )
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.run import Built, build_scene
@@ -233,7 +233,7 @@ def read_photo(photo: PosedInputs, stages: Stages, progress: Progress) -> ReadPh
     given = replace(photo.inputs, intrinsics=photo.camera.intrinsics)
     T = photo_world(photo.camera)
     camera = Camera(photo.camera.intrinsics, np.linalg.inv(T) @ photo.camera.T_world_camera)
-    known = {"given": given, "camera": given_camera(camera)}
+    known = {"given": given, "camera": exact_camera_estimate(camera)}
     artefacts = evaluate(stages, known, ("inputs", "objects"), Runner(None), progress)
     return ReadPhoto(photo, stages, artefacts["inputs"], artefacts["objects"], T)
 

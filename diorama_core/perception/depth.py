@@ -70,12 +70,12 @@ class MeasuredDepth:
         progress.report(0.0, "Filling holes of the measured depth")
         normals_camera = smooth_normals_camera(inputs.depth_m, geometry.camera.intrinsics)
         rendered = render_geometry(geometry, objects, architecture.architecture)
-        filled = filled_depth(inputs.depth_m, normals_camera, geometry.camera, rendered, DepthSource.MEASURED)
+        filled = fill_depth(inputs.depth_m, normals_camera, geometry.camera, rendered, DepthSource.MEASURED)
         progress.report(1.0, "Depth is complete")
         return filled
 
 
-def filled_depth(
+def fill_depth(
     depth_m: Float32[np.ndarray, "h w"],
     normals_camera: Float[np.ndarray, "h w 3"],
     camera: Camera,

@@ -43,14 +43,14 @@ def read_depth_channels(data: bytes) -> Float32[np.ndarray, "h w *c"]:
     if data[:4] != MAGIC:
         raise ExrError("this is not an EXR file; save it again")
     try:
-        return _process.call("the EXR file", decoded, data)
+        return _process.call("the EXR file", decode_depth_channels, data)
     except (ExrError, UnavailableError):
         raise
     except InputError as error:
         raise ExrError(str(error)) from error
 
 
-def decoded(data: bytes) -> Float32[np.ndarray, "h w *c"]:
+def decode_depth_channels(data: bytes) -> Float32[np.ndarray, "h w *c"]:
     """`read_depth_channels` in this process."""
     try:
         import OpenEXR
@@ -61,7 +61,7 @@ def decoded(data: bytes) -> Float32[np.ndarray, "h w *c"]:
         headers = [part.header for part in about.parts]
     except Exception as error:  # the library raises almost anything; each means the same to the user
         raise ExrError("the EXR file is truncated or damaged; save it again") from error
-    part, name = _checked(headers)
+    part, name = _find_depth_channel(headers)
     try:
         whole = OpenEXR.File(io.BytesIO(data), separate_channels=True, num_threads=0)
         if len(whole.parts) != len(headers):
@@ -80,7 +80,7 @@ def decoded(data: bytes) -> Float32[np.ndarray, "h w *c"]:
     return np.stack(values, axis=-1) if len(values) == len(COLOURS) else values[0]
 
 
-def _checked(headers: list[dict]) -> tuple[int, str]:
+def _find_depth_channel(headers: list[dict]) -> tuple[int, str]:
     """Part and channel of the depth, after all that will be decoded was found to fit into memory."""
     total, match = 0, None
     if len(headers) > MAX_PARTS:

@@ -52,23 +52,23 @@ class Illuminant:
 
     def albedo(self, srgb: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
         """Colours (sRGB 0 to 1) as they would be in white light of the same strength."""
-        return self._scaled(srgb, 1.0 / np.array(self.rgb))
+        return self._apply_gains(srgb, 1.0 / np.array(self.rgb))
 
-    def lit(self, srgb: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+    def illuminate(self, srgb: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
         """Colours (sRGB 0 to 1) of surfaces as this light shows them; the inverse of `albedo` unless clipped."""
-        return self._scaled(srgb, np.array(self.rgb))
+        return self._apply_gains(srgb, np.array(self.rgb))
 
     def partly(self, share: float) -> Illuminant:
         """A light between white and this one: that share of its cast, as exposures go (in logarithms)."""
         return _from_chromaticity(share * _chromaticity(np.array(self.rgb)))
 
-    def balanced(self, picture: UInt8[np.ndarray, "h w 3"]) -> UInt8[np.ndarray, "h w 3"]:
+    def white_balance(self, picture: UInt8[np.ndarray, "h w 3"]) -> UInt8[np.ndarray, "h w 3"]:
         """A picture as white light would have it."""
         values = np.arange(256) / 255.0
         table = self.albedo(np.stack([values] * 3, axis=-1))
         return np.asarray(cv2.LUT(picture, np.rint(255 * table).astype(np.uint8)[None]), dtype=np.uint8)
 
-    def _scaled(self, srgb: Float[np.ndarray, "*n 3"], gains: Float[np.ndarray, "3"]) -> Float[np.ndarray, "*n 3"]:
+    def _apply_gains(self, srgb: Float[np.ndarray, "*n 3"], gains: Float[np.ndarray, "3"]) -> Float[np.ndarray, "*n 3"]:
         return np.asarray(np.clip(linear_to_srgb(srgb_to_linear(np.asarray(srgb)) * gains), 0.0, 1.0))
 
 
@@ -79,7 +79,7 @@ def estimate_illuminant(rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray,
         rgb: the photo, sRGB.
         walls: pixels of its walls and ceiling.
     """
-    small, of_walls = _reduced(rgb, walls)
+    small, of_walls = _downscale(rgb, walls)
     light = srgb_to_linear(small / 255.0)
     usable = ((light > SETTINGS.dark).all(axis=-1)) & ((light < SETTINGS.clipped).all(axis=-1))
     if usable.sum() < SETTINGS.min_pixels:
@@ -89,10 +89,10 @@ def estimate_illuminant(rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray,
     votes.append((_chromaticity(_minkowski(edges[usable])), _STATISTICS_SIGMA))
     if (usable & of_walls).sum() >= SETTINGS.min_pixels:
         votes.append((_chromaticity(_bright_median(light[usable & of_walls])), _WALLS_SIGMA))
-    return _from_chromaticity(_combined(votes))
+    return _from_chromaticity(_combine_votes(votes))
 
 
-def _reduced(
+def _downscale(
     rgb: UInt8[np.ndarray, "h w 3"], walls: Bool[np.ndarray, "h w"]
 ) -> tuple[UInt8[np.ndarray, "a b 3"], Bool[np.ndarray, "a b"]]:
     scale = min(1.0, SETTINGS.side_px / max(rgb.shape[:2]))
@@ -124,7 +124,7 @@ def _from_chromaticity(chromaticity: Float[np.ndarray, "2"]) -> Illuminant:
     return Illuminant((red, green, blue))
 
 
-def _combined(votes: list[tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]]) -> Float[np.ndarray, "2"]:
+def _combine_votes(votes: list[tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]]]) -> Float[np.ndarray, "2"]:
     """The posterior mean; estimates far from it are trusted less, step by step."""
     values, sigmas = (np.array(column) for column in zip(*votes, strict=True))
     mean = np.zeros(2)

@@ -46,7 +46,7 @@ class EmbeddedMasks:
             Objects with ids such as "night_stand_2", unique mask ids from 1, and masks of the photo's size that are
             never empty.
         """
-        return outlined(inputs, self._segment_boxes, progress)
+        return outline_objects(inputs, self._segment_boxes, progress)
 
     def _segment_boxes(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: list[LabelledBox], progress: Progress) -> Outlined:
         results: Outlined = []
@@ -62,16 +62,16 @@ class EmbeddedMasks:
         """
         (probability,) = self.outliner.outlines(rgb, [box])
         rows, columns = pixels_of(box, rgb.shape[:2])
-        inside = refined(np.ascontiguousarray(rgb[rows, columns]), probability, self.crop_px)
+        inside = refine_mask(np.ascontiguousarray(rgb[rows, columns]), probability, self.crop_px)
         if inside.mean() < _MIN_SHARE:
-            return filled_box(rgb.shape[:2], box), LOST_CONFIDENCE
+            return box_mask(rgb.shape[:2], box), LOST_CONFIDENCE
         mask = np.zeros(rgb.shape[:2], dtype=bool)
         mask[rows, columns] = inside
         expected = float((probability * inside).sum() / max(np.maximum(probability, inside).sum(), 1e-9))
         return mask, float(np.clip(np.sqrt(expected), LOST_CONFIDENCE, _MAX_CONFIDENCE))
 
 
-def refined(
+def refine_mask(
     rgb: UInt8[np.ndarray, "h w 3"], probability: Float32[np.ndarray, "h w"], longest_px: int
 ) -> Bool[np.ndarray, "h w"]:
     """The likely pixels, the doubtful ones among them decided by colours and edges.
@@ -104,13 +104,13 @@ Outlined = list[tuple[Bool[np.ndarray, "h w"], float]]
 """A mask and its confidence for every box."""
 
 
-def outlined(
+def outline_objects(
     inputs: Inputs,
     segment_boxes: Callable[[UInt8[np.ndarray, "h w 3"], list[LabelledBox], Progress], Outlined],
     progress: Progress,
 ) -> tuple[DetectedObject, ...]:
     """Objects from the user's own masks, and from boxes that no mask belongs to, outlined by `segment_boxes`."""
-    given = _given(inputs)
+    given = _user_instances(inputs)
     taken = {box for _, box, _ in given}
     boxed = [box for box in inputs.boxes if box not in taken]
     segmented = segment_boxes(inputs.photo.rgb, boxed, progress)
@@ -128,7 +128,7 @@ def outlined(
     )
 
 
-def _given(inputs: Inputs) -> list[tuple[int, LabelledBox, Bool[np.ndarray, "h w"]]]:
+def _user_instances(inputs: Inputs) -> list[tuple[int, LabelledBox, Bool[np.ndarray, "h w"]]]:
     """The user's instances that cover at least one pixel."""
     if inputs.instances is None:
         return []
@@ -136,7 +136,7 @@ def _given(inputs: Inputs) -> list[tuple[int, LabelledBox, Bool[np.ndarray, "h w
     return [(mask_id, box, mask) for mask_id, box, mask in named if mask.any()]
 
 
-def filled_box(shape: tuple[int, ...], box: Box) -> Bool[np.ndarray, "h w"]:
+def box_mask(shape: tuple[int, ...], box: Box) -> Bool[np.ndarray, "h w"]:
     """The box as a mask, at least one pixel large."""
     mask = np.zeros(shape[:2], dtype=bool)
     mask[pixels_of(box, (shape[0], shape[1]))] = True

@@ -39,7 +39,7 @@ def arrangement(observed: Scene, rank: int, alike: Alike | None = None) -> Scene
         shape_id = shapes[min(rank, len(shapes) - 1)]
         for item in members:
             if item.shape_id != shape_id:
-                scene = _swapped(scene, item, shape_id, members)
+                scene = _swap(scene, item, shape_id, members)
     return _equally_large(scene) if rank else scene
 
 
@@ -87,7 +87,7 @@ def _sets(scene: Scene) -> list[list[SceneObject]]:
     return list(sets.values())
 
 
-def _swapped(scene: Scene, item: SceneObject, shape_id: str, members: Sequence[SceneObject]) -> Scene:
+def _swap(scene: Scene, item: SceneObject, shape_id: str, members: Sequence[SceneObject]) -> Scene:
     """The object with another shape: in that candidate's fitted pose, or at its own place without one."""
     candidate = _candidate(item, shape_id)
     if candidate is not None:
@@ -102,22 +102,22 @@ def _candidate(item: SceneObject, shape_id: str) -> Candidate | None:
 
 def _equally_large(scene: Scene) -> Scene:
     """One scale for the objects of a set where their sizes agree; each keeps its base, what is mounted its middle."""
-    from diorama_core.pose.sets import shared_scales  # Open3D and OpenCV; the editor opens without them
+    from diorama_core.pose.sets import equalise_scales  # Open3D and OpenCV; the editor opens without them
 
     free = [o for o in scene.objects if not o.locked]
     if not free:
         return scene
-    scales = shared_scales(
+    scales = equalise_scales(
         [o.category for o in free],
         [o.shape_id for o in free],
         np.array([o.pose.scale for o in free]),
         [o.confidence for o in free],
     )
-    sized = {o.id: _scaled(scene, o, scale) for o, scale in zip(free, scales, strict=True)}
+    sized = {o.id: _scale(scene, o, scale) for o, scale in zip(free, scales, strict=True)}
     return replace(scene, objects=tuple(sized.get(o.id, o) for o in scene.objects))
 
 
-def _scaled(scene: Scene, item: SceneObject, scale: np.ndarray) -> SceneObject:
+def _scale(scene: Scene, item: SceneObject, scale: np.ndarray) -> SceneObject:
     edge = scene.support_of(item.id)
     position = item.pose.position
     if edge is None or edge.relation == "placed on":

@@ -81,19 +81,19 @@ def with_beliefs(
     scores = {b.box: b.score for b in inputs.boxes if b.guessed and b.score < 1.0}
     feet = {c.object_id for c in geometry.cuboids if c.foot_seen}
 
-    def believed(item: SceneObject) -> SceneObject:
+    def with_belief(item: SceneObject) -> SceneObject:
         choice, edge = supports.choices.get(item.id), scene.support_of(item.id)
         holders = {} if choice is None or edge is None else choice.probabilities
         sigma = _distance_sigma(scene, item, noise, settings, foot_seen=item.id in feet)
         belief = Belief(
             1.0 if item.box_px not in scores else presence_of(scores[item.box_px], settings),
-            _decided_first(
+            _sort_alternatives(
                 _kinds(item, library, 1.0 if item.box_px in named else settings.kind),
                 record_of(library, item.shape_id).category,
                 settings,
             ),
             _fronts(item, headings.get(item.id, ()), library, settings),
-            () if edge is None or not holders else _decided_first(holders, edge.parent, settings),
+            () if edge is None or not holders else _sort_alternatives(holders, edge.parent, settings),
             round(float(np.hypot(sigma * _distance_m(scene, item), noise.across_m)), 3),
             round(sigma, 3),
         )
@@ -104,7 +104,7 @@ def with_beliefs(
     return replace(
         scene,
         architecture=replace(scene.architecture, planes=planes),
-        objects=tuple(believed(item) for item in scene.objects),
+        objects=tuple(with_belief(item) for item in scene.objects),
         scale_sigma=geometry.scale_sigma if known is None else known,
     )
 
@@ -173,7 +173,7 @@ def _distance_m(scene: Scene, item: SceneObject) -> float:
     return 0.0 if scene.camera is None else float(np.linalg.norm(item.pose.position - scene.camera.position))
 
 
-def _decided_first(shares: Mapping[str, float], decided: str, settings: BeliefSettings) -> Shares:
+def _sort_alternatives(shares: Mapping[str, float], decided: str, settings: BeliefSettings) -> Shares:
     """The likeliest alternatives, what was decided before all others."""
     others = sorted(((n, p) for n, p in shares.items() if n != decided), key=lambda pair: (-pair[1], pair[0]))
     chosen = ((decided, max(shares.get(decided, 0.0), settings.rare)), *others)[: settings.told]

@@ -72,7 +72,9 @@ class NetworkChoice:
         Raises:
             InputError: when the named one finds no boxes.
         """
-        return DETECTORS if self.detector is None else _chosen(self.detector, (*DETECTORS, OWN_DETECTOR), "detector")
+        return (
+            DETECTORS if self.detector is None else _select_names(self.detector, (*DETECTORS, OWN_DETECTOR), "detector")
+        )
 
     def depth_networks(self) -> tuple[str, ...]:
         """Ids to look for, best first.
@@ -80,7 +82,7 @@ class NetworkChoice:
         Raises:
             InputError: when the named one reads no depth.
         """
-        return _chosen(self.depth, (*DEPTH_NETWORKS, *ROUGH_DEPTH), "depth network")
+        return _select_names(self.depth, (*DEPTH_NETWORKS, *ROUGH_DEPTH), "depth network")
 
 
 def _file(named: str | None) -> Path | None:
@@ -104,7 +106,7 @@ def best_here(store: ModelStore, choices: Sequence[str]) -> Network | None:
     return half if half is not None and calculates_in_half() else here[0]
 
 
-def _chosen(named: str | None, known: tuple[str, ...], what: str) -> tuple[str, ...]:
+def _select_names(named: str | None, known: tuple[str, ...], what: str) -> tuple[str, ...]:
     if named is None:
         return known
     if named not in known:

@@ -103,7 +103,7 @@ def load(data: bytes, expected: Any = Any) -> Any:
     """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            names = _checked_names(archive)
+            names = _array_names(archive)
             tree = parse_json(entry(archive, "tree.json"), "tree.json", ProjectError, advice="it is made again")
             arrays = [array_of(entry(archive, name)) for name in names]
         value = _decode(tree, arrays)
@@ -115,7 +115,7 @@ def load(data: bytes, expected: Any = Any) -> Any:
     return value
 
 
-def _checked_names(archive: zipfile.ZipFile) -> list[str]:
+def _array_names(archive: zipfile.ZipFile) -> list[str]:
     """Names of the arrays in order, after the stated sizes of all entries were checked."""
     infos = archive.infolist()
     if len(infos) > MAX_ENTRIES or sum(i.file_size for i in infos) > MAX_BYTES:
@@ -144,7 +144,7 @@ def _encode(value: Any, arrays: list[np.ndarray]) -> Any:
         arrays.append(value)
         return {"array": len(arrays) - 1}
     if is_dataclass(value) and type(value).__name__ in _CLASSES:
-        content = {f.name: _encode(getattr(value, f.name), arrays) for f in fields(value) if not _left_out(value, f)}
+        content = {f.name: _encode(getattr(value, f.name), arrays) for f in fields(value) if not _is_omitted(value, f)}
         return {"class": type(value).__name__, "fields": content}
     if isinstance(value, tuple):
         return {"tuple": [_encode(v, arrays) for v in value]}
@@ -157,7 +157,7 @@ def _encode(value: Any, arrays: list[np.ndarray]) -> Any:
     raise TypeError(f"{type(value).__name__} is not an artefact")
 
 
-def _left_out(value: Any, known: Field[Any]) -> bool:
+def _is_omitted(value: Any, known: Field[Any]) -> bool:
     """Whether a field came later and says nothing: values from before it keep their bytes, and saved results hold."""
     return "absent when none" in known.metadata and getattr(value, known.name) is None
 

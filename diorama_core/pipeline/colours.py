@@ -78,7 +78,7 @@ def photo_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: tuple[DetectedObject
     return colours
 
 
-def shared_by_sets(
+def share_set_colours(
     colours: dict[str, Colour], objects: tuple[DetectedObject, ...], shape_of: Mapping[str, str]
 ) -> dict[str, Colour]:
     """Seats of one shape share the colours that agree.

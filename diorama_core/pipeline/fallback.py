@@ -40,7 +40,7 @@ def with_usable_networks(
     failed: NetworkError | None = None
     while True:
         try:
-            return work(_chosen(choose, store, failed)), lines
+            return work(_choose_stages(choose, store, failed)), lines
         except NetworkError as error:
             network = store.network_of(error.graph)
             if error is failed or network is None or network.id in store.without:
@@ -50,7 +50,7 @@ def with_usable_networks(
             log.warning("%s", lines[-1])
 
 
-def _chosen(choose: ChooseStages, store: ModelStore, failed: NetworkError | None) -> Stages:
+def _choose_stages(choose: ChooseStages, store: ModelStore, failed: NetworkError | None) -> Stages:
     try:
         return choose(store)
     except NetworkError:

@@ -134,7 +134,7 @@ def graph_sentence(graph: SceneGraph) -> str:
         return f"geometry ({asked.trouble or _no_answer(asked)})"
     sentence = f"{asked.model}, {asked.replies} {'reply' if asked.replies == 1 else 'replies'}"
     if asked.calls:
-        sentence += f" ({_spent(asked)})"
+        sentence += f" ({_usage_sentence(asked)})"
     mended = f"; {source.repaired} of {len(graph.supports)} relations from geometry"
     return sentence + mended if source.repaired else sentence
 
@@ -174,7 +174,7 @@ def _room_source(source: RoomSource, words: _Words) -> str:
     clusters = f"{floor} and {source.walls_found} walls from clusters of normals"
     return {
         RoomMethod.GIVEN: "room given",
-        RoomMethod.DEPTH_PLANES: f"planes of the {words.depth}: {_closed_room(source, words)}",
+        RoomMethod.DEPTH_PLANES: f"planes of the {words.depth}: {_room_closure(source, words)}",
         RoomMethod.PHOTO_CUES: f"{count} from lines, edges and colours of the photo and the objects",
         RoomMethod.USUAL_SIZES: f"{count} from the objects and usual room sizes; few lines were seen",
         RoomMethod.SEVERAL_VIEWS: f"{count} from all views together",
@@ -184,7 +184,7 @@ def _room_source(source: RoomSource, words: _Words) -> str:
     }[source.method]
 
 
-def _closed_room(source: RoomSource, words: _Words) -> str:
+def _room_closure(source: RoomSource, words: _Words) -> str:
     """What depth shows of a room, and what was assumed to close it."""
     floor = f"floor {words.found}" if source.floor_found else "floor not seen, its height assumed"
     walls = f"{source.walls_found} walls {words.found}"
@@ -206,11 +206,11 @@ def _openings(source: RoomSource) -> str:
 
 
 def _no_answer(asked: LanguageModelUse) -> str:
-    took = f": {_spent(asked)}" if asked.calls else ""
+    took = f": {_usage_sentence(asked)}" if asked.calls else ""
     return f"{asked.model} gave no usable answer in {asked.unusable} tries{took}"
 
 
-def _spent(asked: LanguageModelUse) -> str:
+def _usage_sentence(asked: LanguageModelUse) -> str:
     """For example "3 calls, 4120 tokens, 0.021 at your prices"."""
     sentence = f"{asked.calls} call{'s' if asked.calls != 1 else ''}, {asked.tokens} tokens"
     return sentence if asked.cost is None else f"{sentence}, {asked.cost:.3f} at your prices"

@@ -27,7 +27,7 @@ from diorama_core.provenance import CameraSource, RoomMethod, RoomSource, ScaleS
 from diorama_core.scene.types import Architecture, Camera, Scene
 
 
-def given_camera(camera: Camera) -> CameraEstimate:
+def exact_camera_estimate(camera: Camera) -> CameraEstimate:
     """A camera that is known, as the stage that finds it would say it."""
     reading = CameraHypothesis(camera.intrinsics, camera.T_world_camera[:3, :3], 1.0)
     return CameraEstimate((reading,), 1.0, CameraSource.exact(), height_m=float(camera.position[2]))
@@ -41,7 +41,7 @@ class GivenCamera:
 
     def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
         """The camera."""
-        return given_camera(self.camera)
+        return exact_camera_estimate(self.camera)
 
 
 @dataclass(frozen=True, eq=False)

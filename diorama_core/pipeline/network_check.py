@@ -71,7 +71,7 @@ def check_networks(store: ModelStore, known: Inputs, progress: Progress = SILENT
     return tuple(checks)
 
 
-def rejected(
+def delete_failing_networks(
     store: ModelStore, network_ids: Sequence[str], known: Inputs, progress: Progress = SILENT
 ) -> tuple[NetworkCheck, ...]:
     """Try networks that just arrived without published checksums, and delete those that do not work.

@@ -48,7 +48,7 @@ from diorama_core.perception.foundation.proposals import (
     JoinedDetection,
     OwnDetection,
     clickable,
-    clicked_box,
+    find_clicked_box,
     names_of,
 )
 from diorama_core.perception.language.client import LmmSettings
@@ -116,7 +116,7 @@ def stages_for(
     base = with_joint_retrieval(base, library, store)
     if profile == "foundation":
         _insist(inputs, store)
-        base = _posed_as_published(base, library, store)
+        base = _with_published_poses(base, library, store)
     return foundation_stages(base, inputs, store, lmm or LmmSettings.from_environment(), choice)
 
 
@@ -199,7 +199,7 @@ def namers(
     """Every way to name given boxes, by name: alone, and with the words of what finds everyday objects."""
     if not has_own_recogniser():
         return {}
-    return {way: partial(_named, finder) for way, finder in _helped(store).items()}
+    return {way: partial(_name_boxes, finder) for way, finder in _everyday_detectors(store).items()}
 
 
 def clickers(
@@ -208,22 +208,26 @@ def clickers(
     """Every way from clicks on a photo to boxes, by name: alone, and with the boxes of what finds everyday objects."""
     if not has_own_recogniser():
         return {}
-    return {way: partial(_clicked, finder) for way, finder in _helped(store).items()}
+    return {way: partial(_find_clicked_boxes, finder) for way, finder in _everyday_detectors(store).items()}
 
 
-def _helped(store: ModelStore | None) -> Mapping[str, DetectionStage | None]:
+def _everyday_detectors(store: ModelStore | None) -> Mapping[str, DetectionStage | None]:
     everyday = network_stages.everyday_detector(store or ModelStore.default())
     return {"own": None} if everyday is None else {"own": None, "own, everyday objects known": everyday}
 
 
-def _named(finder: DetectionStage | None, photo: Photo, boxes: Float[np.ndarray, "n 4"]) -> Sequence[Sequence[str]]:
+def _name_boxes(
+    finder: DetectionStage | None, photo: Photo, boxes: Float[np.ndarray, "n 4"]
+) -> Sequence[Sequence[str]]:
     return names_of(own_recogniser(), photo, boxes, () if finder is None else finder.detect(photo, (), Progress()))
 
 
-def _clicked(finder: DetectionStage | None, photo: Photo, pixels: Float[np.ndarray, "n 2"]) -> Sequence[Box | None]:
+def _find_clicked_boxes(
+    finder: DetectionStage | None, photo: Photo, pixels: Float[np.ndarray, "n 2"]
+) -> Sequence[Box | None]:
     known = () if finder is None else finder.detect(photo, (), Progress())
     boxes = clickable(own_recogniser(), photo, known)
-    return [clicked_box(boxes, float(x), float(y)) for x, y in pixels]
+    return [find_clicked_box(boxes, float(x), float(y)) for x, y in pixels]
 
 
 def propose_boxes(
@@ -280,7 +284,7 @@ def _insist(inputs: Inputs, store: ModelStore) -> None:
             )
 
 
-def _posed_as_published(base: Stages, library: ShapeLibrary, store: ModelStore) -> Stages:
+def _with_published_poses(base: Stages, library: ShapeLibrary, store: ModelStore) -> Stages:
     """Poses by DINOv2's patches, and the scale network's where the user has converted one."""
     features = _best(store, PATCH_FEATURES, network_stages.patch_features)
     if features is None:

@@ -113,12 +113,12 @@ def reconstruct_object(
         raise InputError("this scene has no photo camera; build it from the photo first")
     reconstruction, _ = with_usable_networks(
         lambda store: stages_for("auto", inputs, library, store=store),
-        lambda stages: _reconstructed(stages, scene, inputs, library, box, object_id, mask, Runner(cache), progress),
+        lambda stages: _reconstruct(stages, scene, inputs, library, box, object_id, mask, Runner(cache), progress),
     )
     return reconstruction
 
 
-def _reconstructed(
+def _reconstruct(
     stages: Stages,
     scene: Scene,
     inputs: Inputs,
@@ -136,12 +136,12 @@ def _reconstructed(
         built = evaluate(stages, photo, ("posed",), runner, progress.part(0.5, 1.0))
         candidates = next((p for p in built["posed"] if p.object_id == object_id and p.candidates), None)
         if candidates is not None:
-            return _found(stages, scene, library, known, built, candidates, as_built=True)
-    detected = _segmented(stages.objects, photo["inputs"], box, mask, object_id, progress.part(0.5, 0.6))
-    artefacts, posed = _posed_alone(stages, photo, detected, progress.part(0.6, 1.0))
+            return _build_object(stages, scene, library, known, built, candidates, as_built=True)
+    detected = _segment(stages.objects, photo["inputs"], box, mask, object_id, progress.part(0.5, 0.6))
+    artefacts, posed = _pose_alone(stages, photo, detected, progress.part(0.6, 1.0))
     if posed is None:
         raise InputError(f"the library has no shape for “{box.label}”; choose a more common name")
-    return _found(stages, scene, library, detected, artefacts, posed, as_built=False)
+    return _build_object(stages, scene, library, detected, artefacts, posed, as_built=False)
 
 
 def _says(known: DetectedObject, box: LabelledBox, mask: Bool[np.ndarray, "h w"] | None) -> bool:
@@ -150,7 +150,7 @@ def _says(known: DetectedObject, box: LabelledBox, mask: Bool[np.ndarray, "h w"]
     return same_box and (mask is None or np.array_equal(mask, known.mask))
 
 
-def _segmented(
+def _segment(
     stage: ObjectStage,
     inputs: Inputs,
     box: LabelledBox,
@@ -164,7 +164,7 @@ def _segmented(
     return DetectedObject(object_id, box.category, box.label, box.box, mask, 1, 1.0)
 
 
-def _posed_alone(
+def _pose_alone(
     stages: Stages, photo: Artefacts, detected: DetectedObject, progress: Progress
 ) -> tuple[Artefacts, PosedCandidates | None]:
     """The photo's artefacts with the object among the others, and the object's candidates, ranked for it alone."""
@@ -188,7 +188,7 @@ def _posed_alone(
     return whole, posed[0] if posed and posed[0].candidates else None
 
 
-def _found(
+def _build_object(
     stages: Stages,
     scene: Scene,
     library: ShapeLibrary,

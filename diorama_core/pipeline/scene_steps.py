@@ -36,7 +36,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.perception.foundation.depth_prediction import with_depth
 from diorama_core.perception.illuminant import Illuminant
-from diorama_core.pipeline.colours import photo_colours, room_illuminant, shared_by_sets
+from diorama_core.pipeline.colours import photo_colours, room_illuminant, share_set_colours
 from diorama_core.pipeline.steps import Corrected, LaidOut
 from diorama_core.processes import call_beside
 from diorama_core.progress import Progress
@@ -70,9 +70,9 @@ def illuminant(
     return room_illuminant(inputs, objects, room.architecture, geometry.camera)
 
 
-def balanced_inputs(inputs: Inputs, light: Illuminant) -> Inputs:
+def white_balance_inputs(inputs: Inputs, light: Illuminant) -> Inputs:
     """The inputs with the photo as white light would have it."""
-    return replace(inputs, photo=replace(inputs.photo, rgb=light.balanced(inputs.photo.rgb)))
+    return replace(inputs, photo=replace(inputs.photo, rgb=light.white_balance(inputs.photo.rgb)))
 
 
 def white_balance_room(room: ArchitectureEstimate, light: Illuminant) -> ArchitectureEstimate:
@@ -87,7 +87,7 @@ def object_colours(
 ) -> dict[str, tuple[float, float, float]]:
     """The colours of objects in the photo in white light, shared by sets, by object id."""
     shape_of = {p.object_id: p.candidates[0].shape_id for p in posed if p.candidates}
-    return shared_by_sets(photo_colours(balanced.photo.rgb, objects), objects, shape_of)
+    return share_set_colours(photo_colours(balanced.photo.rgb, objects), objects, shape_of)
 
 
 def position_noise(geometry: ObjectGeometry) -> ObservationNoise:
@@ -95,7 +95,7 @@ def position_noise(geometry: ObjectGeometry) -> ObservationNoise:
     return MEASURED if geometry.source.is_measured else REASONED
 
 
-def decided_supports(
+def decide_supports(
     scene: Scene, library: ShapeLibrary, noise: ObservationNoise, objects: tuple[DetectedObject, ...]
 ) -> DecidedSupports:
     """What holds each object of a posed scene.
@@ -110,7 +110,7 @@ def decided_supports(
     return with_decided_supports(scene, library, noise, SupportEvidence.of(scene, below))
 
 
-def supported(posed: Scene, supports: DecidedSupports) -> Corrected:
+def apply_supports(posed: Scene, supports: DecidedSupports) -> Corrected:
     """The scene with its supports decided, and what that changed."""
     changes = reasons_of_change(posed, supports.scene, "supports", "what holds it agrees with where it was seen")
     terms = (reason for name, choice in supports.choices.items() for reason in _support_reasons(name, choice))
@@ -185,7 +185,7 @@ def plane_pictures(
     return plane_textures(balanced, objects, geometry.camera, scene.architecture, filler, standing)
 
 
-def laid_out(stage: LayoutStage, observed: LaidOut, preview: Preview | None, progress: Progress) -> LaidOut:
+def optimise_layout(stage: LayoutStage, observed: LaidOut, preview: Preview | None, progress: Progress) -> LaidOut:
     """The scene after the layout optimiser.
 
     Args:
@@ -197,7 +197,7 @@ def laid_out(stage: LayoutStage, observed: LaidOut, preview: Preview | None, pro
     return LaidOut(*stage.optimise(observed.scene, progress, preview))
 
 
-def refined(
+def refine_layout(
     stage: RefinementStage,
     arranged: LaidOut,
     observed: Scene,
@@ -217,14 +217,14 @@ def refined(
     return LaidOut(*stage.refine(arranged.scene, arranged.report, observed, objects, progress))
 
 
-def dressed(scene: Scene, look: PhotoAppearance, of_planes: Pictures) -> Scene:
+def apply_appearance(scene: Scene, look: PhotoAppearance, of_planes: Pictures) -> Scene:
     """The scene with the photo's materials, whose planes show the pictures that there are, by plane id."""
     scene = look.applied(scene)
     planes = tuple(replace(p, texture=p.id if p.id in of_planes else None) for p in scene.architecture.planes)
     return replace(scene, architecture=replace(scene.architecture, planes=planes))
 
 
-def finished(
+def finish_scene(
     refined: LaidOut, look: PhotoAppearance, of_planes: Pictures, room: ArchitectureEstimate, inputs: Inputs
 ) -> FinishedScene:
     """The scene as a person gets it: measured, in the photo's materials, its floor trimmed, in the given scale.
@@ -237,7 +237,7 @@ def finished(
         inputs: may give the camera's height.
     """
     scene = refined.scene if refined.report is None else set_metrics(refined.scene, refined.report.after)
-    scene, textures = dressed(scene, look, of_planes), dict(of_planes)
+    scene, textures = apply_appearance(scene, look, of_planes), dict(of_planes)
     if room.architecture.floor is not None:
         trimmed = without_floor_behind_walls(scene, room.architecture.floor)
         scene, cut = refitted_textures(scene, trimmed, textures)

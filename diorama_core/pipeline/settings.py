@@ -34,7 +34,7 @@ def with_settings(stages: Stages, values: Mapping[str, float]) -> Stages:
             raise InputError(f"{name}: the stages have no such setting; there are {', '.join(known)}")
     for name, value in values.items():
         if "." in name:
-            stages = _replaced(stages, name.split("."), value)
+            stages = _replace_number(stages, name.split("."), value)
         elif value == 0:
             left_out: dict[str, Any] = {name: None}
             stages = replace(stages, **left_out)
@@ -50,11 +50,11 @@ def _numbers(value: Any, prefix: str) -> Iterator[tuple[str, float]]:
             yield from _numbers(value_of_field, f"{name}.")
 
 
-def _replaced(value: Any, names: list[str], number: float) -> Any:
+def _replace_number(value: Any, names: list[str], number: float) -> Any:
     """The dataclass with another number in the field, or the field within a field, of these names."""
     current = getattr(value, names[0])
     if len(names) > 1:
-        new = _replaced(current, names[1:], number)
+        new = _replace_number(current, names[1:], number)
     else:
         new = round(number) if isinstance(current, int) else float(number)
     return replace(value, **{names[0]: new})

@@ -189,7 +189,7 @@ class DepthFit:
         centre = np.where(from_high, high - size / 2, low + size / 2)
         position = np.einsum("pij,pj->pi", rotations, centre)
         if sure:
-            position = self.contact.anchor.placed(position, rotations, size)
+            position = self.contact.anchor.place_centres(position, rotations, size)
         elif self._top_seen:
             position[:, 2] = high[:, 2] - size[:, 2] / 2
         return PoseBatch(rotations, position, scale)
@@ -198,17 +198,17 @@ class DepthFit:
     def _top_seen(self) -> bool:
         return self.outline is not None and self.outline.upper_end_seen
 
-    def refined(self, caster: ShapeCaster, start: PoseBatch) -> PoseBatch:
+    def refine(self, caster: ShapeCaster, start: PoseBatch) -> PoseBatch:
         """The poses after the iteration."""
         x = np.zeros((len(start), PARAMETERS))
         for looseness in self.settings.looseness:
             normal, gradient = self._system(caster, start, x, looseness)
             diagonal = np.einsum("pii->pi", normal)
             damped = normal + np.einsum("pi,ij->pij", self.settings.damping * diagonal + 1e-9, np.eye(PARAMETERS))
-            x = self._bounded(start, x - np.linalg.solve(damped, gradient[..., None])[..., 0])
-        return self._moved(start, x)
+            x = self._limit_steps(start, x - np.linalg.solve(damped, gradient[..., None])[..., 0])
+        return self._apply_steps(start, x)
 
-    def _bounded(self, start: PoseBatch, x: np.ndarray) -> np.ndarray:
+    def _limit_steps(self, start: PoseBatch, x: np.ndarray) -> np.ndarray:
         """Steps of the sizes kept within the limits, so that the solution and the pose do not drift apart."""
         wanted = start.scale * np.exp(np.clip(x[:, 4:], -1.5, 1.5)) * self.limits.shape_size_m
         x = x.copy()
@@ -219,7 +219,7 @@ class DepthFit:
         x[:, :3] *= np.minimum(1.0, most / np.maximum(length, 1e-9))[:, None]
         return np.nan_to_num(x)
 
-    def _moved(self, start: PoseBatch, x: np.ndarray) -> PoseBatch:
+    def _apply_steps(self, start: PoseBatch, x: np.ndarray) -> PoseBatch:
         turns = np.array([yaw_rotation(angle) for angle in x[:, 3]])
         return PoseBatch(turns @ start.R, start.position + x[:, :3], start.scale * np.exp(x[:, 4:]))
 
@@ -227,7 +227,7 @@ class DepthFit:
         self, caster: ShapeCaster, start: PoseBatch, x: np.ndarray, looseness: float
     ) -> tuple[Float[np.ndarray, "p 7 7"], Float[np.ndarray, "p 7"]]:
         """Normal matrices and gradients of all poses."""
-        poses = self._moved(start, x)
+        poses = self._apply_steps(start, x)
         parts = [self._surface(caster, poses, looseness), self._priors(poses, x)]
         if self.outline is not None:
             parts.append(self._reaches(caster, poses, looseness))

@@ -51,7 +51,12 @@ class InnerEdges:
         grey = seen.window.means(rgb) @ np.array([0.299, 0.587, 0.114])
         whole = (seen.covered * seen.weight > settings.whole_cell).reshape(cells, cells).astype(np.uint8)
         inside = cv2.erode(whole, np.ones((3, 3), np.uint8), borderValue=0).astype(bool)
-        return cls(cells, inside, _told(_gradients(grey.reshape(cells, cells), settings), inside, settings), settings)
+        return cls(
+            cells,
+            inside,
+            _normalise_edges(_gradients(grey.reshape(cells, cells), settings), inside, settings),
+            settings,
+        )
 
     def agreement(self, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """Correlation, -1 to 1, with the edges of a shape under every pose; 0 where either has none."""
@@ -68,7 +73,9 @@ class InnerEdges:
             edges = edges + _gradients(
                 self.settings.turn * hits.normals_world[pose][:, axis].reshape(self.cells, self.cells), self.settings
             )
-        return float(_told(np.minimum(edges, self.settings.strongest), self.inside, self.settings) @ self.photo)
+        return float(
+            _normalise_edges(np.minimum(edges, self.settings.strongest), self.inside, self.settings) @ self.photo
+        )
 
 
 def _gradients(picture: Float[np.ndarray, "c c"], settings: PoseEvidenceSettings) -> Float32[np.ndarray, "c c 2"]:
@@ -87,7 +94,7 @@ def _bends(inverse_depth: Float[np.ndarray, "c c"]) -> Float32[np.ndarray, "c c 
     return np.stack([across / middle, down / middle], axis=-1).astype(np.float32)
 
 
-def _told(
+def _normalise_edges(
     edges: Float32[np.ndarray, "c c 2"], inside: Bool[np.ndarray, "c c"], settings: PoseEvidenceSettings
 ) -> Float[np.ndarray, "m"]:
     """The edges inside, both directions one after the other, of zero mean and unit length."""
@@ -137,9 +144,9 @@ class Details:
             hits: What the rays of the object's window meet of it, in one pose.
         """
         edges = float(self.edges.agreement(hits)[0])
-        return self.settings.of_edges * edges + self.settings.of_parts * self.explained_by_parts(appearance, hits)
+        return self.settings.of_edges * edges + self.settings.of_parts * self.share_between_parts(appearance, hits)
 
-    def explained_by_parts(self, appearance: ShapeAppearance, hits: ShapeHits) -> float:
+    def share_between_parts(self, appearance: ShapeAppearance, hits: ShapeHits) -> float:
         """Share of the picture's variation of colour that lies between the parts of a shape, 0 to 1."""
         shown = hits.is_hit[0] & (self.own > self.settings.whole_cell)
         rgba = appearance.face_rgba[np.where(shown, hits.triangles[0], 0)]

@@ -30,7 +30,7 @@ class Anchor:
     point_world: Float[np.ndarray, "3"]
     """A point of the anchored face."""
 
-    def placed(self, centres: np.ndarray, R: np.ndarray, sizes_m: np.ndarray) -> Float[np.ndarray, "p 3"]:
+    def place_centres(self, centres: np.ndarray, R: np.ndarray, sizes_m: np.ndarray) -> Float[np.ndarray, "p 3"]:
         """The centres moved along the axis so that boxes of these sizes touch the anchored face.
 
         Args:
@@ -124,7 +124,7 @@ def hypotheses_for(
     R = np.array([cuboid.R_world_object @ yaw_rotation(angle) for angle in total])
     scale = limits.scale_for(filled)
     sizes = scale * limits.shape_size_m
-    position = anchor.placed(np.tile(cuboid.centre, (len(total), 1)), R, sizes)
+    position = anchor.place_centres(np.tile(cuboid.centre, (len(total), 1)), R, sizes)
     thick = np.maximum(cuboid.size_m.min(), settings.thin_m)
     misfit = np.sqrt((np.log(np.maximum(sizes, thick) / np.maximum(wanted, thick)) ** 2).mean(axis=1))
     hypotheses = Hypotheses(
@@ -147,7 +147,7 @@ def _as_made(
     turns = np.repeat(_TURNS, len(hypotheses.poses))
     R = np.tile(hypotheses.poses.R, (len(_TURNS), 1, 1)) @ np.array([yaw_rotation(angle) for angle in turns])
     sizes = scale * limits.shape_size_m
-    position = anchor.placed(np.tile(cuboid.centre, (len(R), 1)), R, sizes)
+    position = anchor.place_centres(np.tile(cuboid.centre, (len(R), 1)), R, sizes)
     wanted = np.tile(hypotheses.poses.scale * limits.shape_size_m, (len(_TURNS), 1))
     thick = np.maximum(cuboid.size_m.min(), settings.thin_m)
     misfit = np.sqrt((np.log(np.maximum(sizes, thick) / np.maximum(wanted, thick)) ** 2).mean(axis=1))

@@ -32,11 +32,11 @@ from diorama_core.library.furniture.measures import Value, can_be_made, can_be_t
 from diorama_core.library.hands import other_hand
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.stretch import EVEN, relative_scale
-from diorama_core.pose.outline_fit import COARSE, FINE, WIDE, fitted_pose
+from diorama_core.pose.outline_fit import COARSE, FINE, WIDE, fit_pose
 from diorama_core.pose.parameter_fit import ParameterFit
-from diorama_core.pose.seen_objects import SeenObject, seen_objects
+from diorama_core.pose.seen_objects import SeenObject, observe_objects
 from diorama_core.pose.settings import SETTINGS, PoseSettings, ShapeFitSettings
-from diorama_core.pose.turned_profile import turned
+from diorama_core.pose.turned_profile import fit_profile
 from diorama_core.processes import map_beside
 from diorama_core.progress import Progress
 from diorama_core.protocols import PoseStage
@@ -66,9 +66,9 @@ class MadeToMeasure:
             inputs, objects, geometry, depth, shapes, progress: as documented in `protocols.PoseStage`.
         """
         posed = self.stage.pose(inputs, objects, geometry, depth, shapes, progress.part(0.0, 0.8))
-        return self.fitted(posed, inputs, objects, geometry, depth, progress.part(0.8, 1.0))
+        return self.fit(posed, inputs, objects, geometry, depth, progress.part(0.8, 1.0))
 
-    def fitted(
+    def fit(
         self,
         posed: tuple[PosedCandidates, ...],
         inputs: Inputs,
@@ -83,7 +83,7 @@ class MadeToMeasure:
             posed: candidates of every object, best first.
             inputs, objects, geometry, depth, progress: as documented in `protocols.PoseStage`.
         """
-        seen = seen_objects(posed, inputs, objects, geometry, depth, self.settings)
+        seen = observe_objects(posed, inputs, objects, geometry, depth, self.settings)
         progress.report(0.0, "Making shapes to measure")
         posed = self._best_fitting(posed, seen)
         pose_of = {p.object_id: p.candidates[0].pose for p in posed if p.candidates}
@@ -106,11 +106,11 @@ class MadeToMeasure:
         shared = Counter(p.candidates[0].shape_id for p in posed if p.candidates)
         choice = FittedChoice(self.library, self.settings)
 
-        def agreed(one: PosedCandidates) -> bool:
+        def is_agreed(one: PosedCandidates) -> bool:
             shown = seen.get(one.object_id)
             return shown is None or (shared[one.candidates[0].shape_id] > 1 and shown.may_have_agreed)
 
-        free = [one for one in posed if not agreed(one)]
+        free = [one for one in posed if not is_agreed(one)]
         tasks = [(one, seen[one.object_id]) for one in free]
         chosen = {one.object_id: one for one in map_beside(choice.best_first, tasks)}
         return tuple(chosen.get(one.object_id, one) for one in posed)
@@ -122,10 +122,10 @@ class MadeToMeasure:
         clear = {i: one for i, one in shown.items() if one.pixels >= self.settings.shapes.min_pixels}
         best, alone = members[0].candidates[0], len(members) == 1
         parameters = ParameterFit(self.library, list(clear.values()), resize=alone, settings=self.settings)
-        fit = parameters.fitted(best, [one.pose for one in clear.values()]) if clear else None
+        fit = parameters.fit(best, [one.pose for one in clear.values()]) if clear else None
         starts = dict(zip(clear, fit.poses, strict=True)) if fit else {}
         placed = {
-            m.object_id: self._placed(
+            m.object_id: self._fit_candidate(
                 m.candidates[0],
                 None if fit is None else fit.changes,
                 shown.get(m.object_id),
@@ -134,9 +134,9 @@ class MadeToMeasure:
             )
             for m in members
         }
-        return self._turned(members, shown, placed) or placed
+        return self._fit_profiles(members, shown, placed) or placed
 
-    def _turned(
+    def _fit_profiles(
         self, members: Sequence[PosedCandidates], shown: Mapping[str, SeenObject], placed: Mapping[str, Candidate]
     ) -> dict[str, Candidate] | None:
         """Objects of one shape with the profile that the picture shows; None where they agree as well without."""
@@ -148,10 +148,12 @@ class MadeToMeasure:
         caster, alone = ShapeCaster(self.library.mesh(best.shape_id)), len(members) == 1
         poses_of_members, size = {m.object_id: m.candidates[0].pose for m in members}, np.asarray(best.shape_size_m)
         poses = [
-            fitted_pose(e, caster, poses_of_members[i], size, resize=alone, settings=self.settings.shapes)
+            fit_pose(e, caster, poses_of_members[i], size, resize=alone, settings=self.settings.shapes)
             for i, e in sure.items()
         ]
-        profile = turned(self.library, best.shape_id, list(sure.values()), poses, float(np.mean(before)), self.settings)
+        profile = fit_profile(
+            self.library, best.shape_id, list(sure.values()), poses, float(np.mean(before)), self.settings
+        )
         if profile is None:
             return None
         x, y, z = (float(v) for v in profile.size_m)
@@ -161,7 +163,7 @@ class MadeToMeasure:
             for i, c in placed.items()
         }
 
-    def _placed(
+    def _fit_candidate(
         self, best: Candidate, changes: dict[str, Value] | None, seen: SeenObject | None, start: Pose, *, resize: bool
     ) -> Candidate:
         """The candidate with these parameters, its pose fitted; shapes that are nearly as retrieved stay of its id.
@@ -182,11 +184,9 @@ class MadeToMeasure:
         if seen is not None:
             caster = ShapeCaster(self.library.mesh(shape_id))
             near = replace(COARSE if seen.has_given_mask else WIDE, scale=before)
-            pose = fitted_pose(
-                seen.evidence, caster, pose, size, resize=resize, near=near, settings=self.settings.shapes
-            )
+            pose = fit_pose(seen.evidence, caster, pose, size, resize=resize, near=near, settings=self.settings.shapes)
             if seen.has_given_mask:
-                pose = fitted_pose(
+                pose = fit_pose(
                     seen.fine,
                     caster,
                     pose,
@@ -248,15 +248,15 @@ class FittedChoice:
             seen: The object.
         """
         outlined = seen.is_surely_outlined
-        first, first_score = self._fitted(one.candidates[0], seen)
+        first, first_score = self._score_fit(one.candidates[0], seen)
         if first < self.settings.shapes.good_fit:
             return one
         by_rank = seen.evidence.surface is None and first >= self.settings.shapes.poor_fit
         others = {
-            *_compared(one.candidates, by_rank, outlined, self.settings.shapes),
+            *_select_alternatives(one.candidates, by_rank, outlined, self.settings.shapes),
             *(self._uneven(one.candidates) if outlined else ()),
         }
-        scores = {0: first_score, **{k: self._fitted(one.candidates[k], seen)[1] for k in others}}
+        scores = {0: first_score, **{k: self._score_fit(one.candidates[k], seen)[1] for k in others}}
         best = max(scores, key=lambda k: (scores[k], -k))
         rest = (*one.candidates[:best], *one.candidates[best + 1 :])
         return replace(one, candidates=(one.candidates[best], *rest))
@@ -266,7 +266,7 @@ class FittedChoice:
         places = (k for k, c in enumerate(candidates) if k and other_hand(self.library, c.shape_id) is not None)
         return list(islice(places, self.settings.shapes.uneven))
 
-    def _fitted(self, candidate: Candidate, seen: SeenObject) -> tuple[float, float]:
+    def _score_fit(self, candidate: Candidate, seen: SeenObject) -> tuple[float, float]:
         """Disagreement with the picture, 0 to 1, in the fitted pose and with the profile that is seen; and the score.
 
         Of what has a left and a right, the hand that fits better counts. The score is a logarithm, higher is better.
@@ -275,13 +275,13 @@ class FittedChoice:
         hands = [i for i in (candidate.shape_id, other_hand(self.library, candidate.shape_id)) if i is not None]
         casters = [ShapeCaster(self.library.mesh(hand)) for hand in hands]
         poses = [
-            fitted_pose(evidence, c, candidate.pose, size, resize=True, settings=self.settings.shapes) for c in casters
+            fit_pose(evidence, c, candidate.pose, size, resize=True, settings=self.settings.shapes) for c in casters
         ]
         errors = [evidence.error(c, p) for c, p in zip(casters, poses, strict=True)]
         best = int(np.argmin(errors))
         error, caster, pose = errors[best], casters[best], poses[best]
         fits = (
-            turned(self.library, candidate.shape_id, [evidence], [pose], error, self.settings)
+            fit_profile(self.library, candidate.shape_id, [evidence], [pose], error, self.settings)
             if seen.is_surely_outlined
             else None
         )
@@ -294,7 +294,9 @@ class FittedChoice:
         return error, of_rank - of_fit + weights.of_edges * edges
 
 
-def _compared(candidates: Sequence[Candidate], by_rank: bool, outlined: bool, settings: ShapeFitSettings) -> list[int]:
+def _select_alternatives(
+    candidates: Sequence[Candidate], by_rank: bool, outlined: bool, settings: ShapeFitSettings
+) -> list[int]:
     """Which candidates are fitted beside the first: the next ones, and bodies of revolution."""
     next_ones = range(1, min(settings.compared, len(candidates))) if by_rank else ()
     round_ones = (

@@ -77,12 +77,12 @@ class Evidence:
         """
         if self.see_through is None:
             return self.seen.agreement(silhouettes)
-        share, weight = self.see_through.share, self.seen.weight * self._confirmed
+        share, weight = self.see_through.share, self.seen.weight * self._mask_weight
         of_mask = soft_iou(self.seen.covered, silhouettes.astype(np.float64), weight)
         return (1 - share) * of_mask + share * self.see_through.agreement(silhouettes)
 
     @cached_property
-    def _confirmed(self) -> Float[np.ndarray, "n"]:
+    def _mask_weight(self) -> Float[np.ndarray, "n"]:
         """What cells of the mask count: less where the colours contradict it."""
         assert self.see_through is not None
         boxed = self.see_through.weight > 0
@@ -132,7 +132,7 @@ class Evidence:
         stretched = 0.5 * (limits.stretch(poses.scale) / sigma) ** 2
         return self.facing.cost(poses.R) + stretched
 
-    def enlarged_cost(self, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
+    def enlargement_cost(self, scale: Float[np.ndarray, "3"], limits: SizeLimits) -> float:
         """What speaks against a shape that had to become much larger or smaller than it was made, from a photo alone.
 
         A folded blanket that is twice as large in every direction is another thing. A sure outline tells that better.
@@ -146,7 +146,7 @@ class Evidence:
             self.settings.of_sure_outline * self.seen.mask_trust**4 * float(np.log(error + self.settings.noise_floor))
         )
 
-    def seen_past(self, caster: ShapeCaster, poses: PoseBatch) -> float:
+    def see_through_score(self, caster: ShapeCaster, poses: PoseBatch) -> float:
         """What colours say of one posed shape by where one looks past it, beyond its score: a logarithm, at most 0."""
         if self.see_through is None:
             return 0.0

@@ -125,7 +125,7 @@ class MeasuredObject:
         """Whether the picture's border or something nearer may hide a part."""
         return self.outline is None or not self.outline.known.all()
 
-    def turned(self, best: PoseBatch, symmetry: SymmetryFold, limits: SizeLimits) -> PoseBatch:
+    def turn_by_quarters(self, best: PoseBatch, symmetry: SymmetryFold, limits: SizeLimits) -> PoseBatch:
         """A pose turned by quarters in its place, each turn that the symmetry tells apart, at an even scale.
 
         Args:

@@ -65,7 +65,7 @@ class _Moves:
         self.scale.append(scale)
 
 
-def fitted_pose(
+def fit_pose(
     evidence: Evidence,
     caster: ShapeCaster,
     pose: Pose,

@@ -21,7 +21,7 @@ from diorama_core.library.furniture.measures import Value, can_be_made, made_id,
 from diorama_core.library.furniture.reshaping import MIRRORED
 from diorama_core.library.hands import other_hand
 from diorama_core.library.record import BUILT_IN, Shape, ShapeLibrary, record_of
-from diorama_core.pose.outline_fit import FitRange, fitted_pose, resizing_cost
+from diorama_core.pose.outline_fit import FitRange, fit_pose, resizing_cost
 from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings, PoseSettings, ShapeFitSettings
 from diorama_core.scene.types import Candidate, Pose
@@ -91,7 +91,7 @@ class ParameterFit:
     """Whether sizes may change; those of a set stay alike."""
     settings: PoseSettings = SETTINGS
 
-    def fitted(self, best: Candidate, poses: Sequence[Pose]) -> FittedParameters | None:
+    def fit(self, best: Candidate, poses: Sequence[Pose]) -> FittedParameters | None:
         """The parameters that agree best; None where the retrieved shape is rather stretched than built.
 
         Args:
@@ -107,13 +107,13 @@ class ParameterFit:
         if not can_be_made(best.shape_id, size):
             return None
         poses = [Pose(p.R_world_object, p.position, p.scale * size_m / size) for p in as_is.poses]
-        changes, fit = self._searched(best.shape_id, size, poses, best.pose.scale * size_m / size, as_is.score)
+        changes, fit = self._search(best.shape_id, size, poses, best.pose.scale * size_m / size, as_is.score)
         if fit.score < as_is.score - self.settings.shapes.size_loss:
             return None
         at = tuple(Pose(p.R_world_object, p.position, p.scale * size / size_m) for p in fit.poses)
         return FittedParameters(changes, at)
 
-    def _searched(
+    def _search(
         self,
         design_id: str,
         size_m: Float[np.ndarray, "3"],
@@ -200,7 +200,7 @@ class ParameterFit:
         for step in self.settings.shapes.size_steps:
             near = FitRange(start, (step,), self.settings.shapes.size_rounds)
             poses = [
-                fitted_pose(
+                fit_pose(
                     o.evidence, variant.caster, p, size_m, resize=self.resize, near=near, settings=self.settings.shapes
                 )
                 for o, p in zip(self.seen, fit.poses, strict=True)

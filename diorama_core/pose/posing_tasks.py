@@ -22,7 +22,7 @@ from diorama_core.pose.hypotheses import Anchor, anchor_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
 from diorama_core.pose.settings import SETTINGS, PoseSearchSettings, PoseSettings
-from diorama_core.pose.surface import measured_surface, noise_of
+from diorama_core.pose.surface import measure_surface, noise_of
 from diorama_core.scene.types import Candidate, Pose
 from diorama_core.workers import map_threads
 
@@ -148,7 +148,7 @@ class _Surroundings:
         centres = np.array([c.centre for c in self.cuboids]).reshape(-1, 3)
         parents = self.parents
         windows = [observe_among(camera, self.items, centres, parents, i, count) for count in cells]
-        surfaces = [measured_surface(depth, seen, item.mask, self.noise, self.settings.evidence) for seen in windows]
+        surfaces = [measure_surface(depth, seen, item.mask, self.noise, self.settings.evidence) for seen in windows]
         rgb, closed = self.inputs.photo.rgb, item.category in NEVER_OPEN
         coarse, fine = (
             Evidence(
@@ -179,7 +179,7 @@ class PosedShape:
     """By which the shapes of one object are ordered: a logarithm, higher is better."""
 
 
-def ordered_shapes(shapes: Sequence[PosedShape], ranks: Mapping[str, float]) -> tuple[PosedShape, ...]:
+def sort_shapes(shapes: Sequence[PosedShape], ranks: Mapping[str, float]) -> tuple[PosedShape, ...]:
     """The shapes of one object by rank, the best first."""
     return tuple(sorted(shapes, key=lambda posed: (-ranks[posed.shape.id], posed.shape.id)))
 

@@ -36,10 +36,10 @@ class BoxFit:
     iterations: int = 4
     settings: PoseSearchSettings = SETTINGS.search
 
-    def refined(self, caster: ShapeCaster, start: PoseBatch) -> PoseBatch:
+    def refine(self, caster: ShapeCaster, start: PoseBatch) -> PoseBatch:
         """The poses corrected toward the box; unchanged where no correction helps."""
         tangents = self._tangents()
-        sides = _hidden_sides(self.seen)
+        sides = _find_hidden_sides(self.seen)
         x = np.zeros((len(start), _PARAMETERS))
         sigma = self._sigma(start)
         cost, residual = self._residuals(caster, start, x, sigma, tangents, sides)
@@ -55,7 +55,7 @@ class BoxFit:
             better = trial_cost < cost
             x[better], cost[better], residual[better] = trial[better], trial_cost[better], trial_residual[better]
             damping = np.where(better, damping * 0.3, damping * 8.0)
-        return self._moved(start, x, sigma, tangents)
+        return self._apply_steps(start, x, sigma, tangents)
 
     def _tangents(self) -> Float[np.ndarray, "2 3"]:
         """Along the anchored face: away from the camera, and across."""
@@ -78,13 +78,13 @@ class BoxFit:
         sigma[:, 2:5], sigma[:, 5] = 0.12, self.yaw_sigma_rad
         return sigma
 
-    def _moved(self, start: PoseBatch, x: np.ndarray, sigma: np.ndarray, tangents: np.ndarray) -> PoseBatch:
+    def _apply_steps(self, start: PoseBatch, x: np.ndarray, sigma: np.ndarray, tangents: np.ndarray) -> PoseBatch:
         """The starting poses after steps of x sigmas."""
         change = x * sigma
         R = np.einsum("pij,pjk->pik", start.R, yaw_rotations(change[:, 5]))
         scale = self.limits.scale_for(start.scale * np.exp(change[:, 2:5]) * self.limits.shape_size_m)
         centres = start.position + change[:, :2] @ tangents
-        return PoseBatch(R, self.anchor.placed(centres, R, scale * self.limits.shape_size_m), scale)
+        return PoseBatch(R, self.anchor.place_centres(centres, R, scale * self.limits.shape_size_m), scale)
 
     def _residuals(
         self,
@@ -95,13 +95,13 @@ class BoxFit:
         tangents: np.ndarray,
         hidden: Bool[np.ndarray, "4"],
     ) -> tuple[Float[np.ndarray, "p"], Float[np.ndarray, "p 10"]]:
-        bounds = caster.bounds_px(self.camera, self._moved(start, x, sigma, tangents))
+        bounds = caster.bounds_px(self.camera, self._apply_steps(start, x, sigma, tangents))
         box = np.asarray(self.seen.box, dtype=np.float64)
         extent = np.maximum(np.tile(box[2:] - box[:2], 2), 1.0)
         outward = (bounds - box) * np.array([-1.0, -1.0, 1.0, 1.0]) / (0.015 * extent + 1.5)
         outward = np.where(np.isnan(outward), 20.0, outward)
         outward = np.where(hidden & (outward > 0), self.settings.hidden_side * outward, outward)
-        robust = np.sign(outward) * _softened(np.abs(outward), self.settings)
+        robust = np.sign(outward) * _huber_residuals(np.abs(outward), self.settings)
         residual = np.concatenate([robust, x], axis=1)
         return (residual**2).sum(axis=1), residual
 
@@ -124,7 +124,7 @@ class BoxFit:
         return slopes.transpose(0, 2, 1)
 
 
-def _softened(magnitude: np.ndarray, settings: PoseSearchSettings) -> np.ndarray:
+def _huber_residuals(magnitude: np.ndarray, settings: PoseSearchSettings) -> np.ndarray:
     """Grows like a square root beyond a few sigmas (Huber's loss as a residual)."""
     beyond = np.maximum(2 * settings.beyond_sigma * magnitude - settings.beyond_sigma**2, 0.0)
     return np.where(magnitude <= settings.beyond_sigma, magnitude, np.sqrt(beyond))
@@ -137,7 +137,7 @@ def _damped_step(jacobian: np.ndarray, residual: np.ndarray, damping: np.ndarray
     return -np.linalg.solve(normal, gradient[..., None])[..., 0]
 
 
-def _hidden_sides(seen: Observed) -> Bool[np.ndarray, "4"]:
+def _find_hidden_sides(seen: Observed) -> Bool[np.ndarray, "4"]:
     """Sides of the box beside which nearer objects may hide more of the object."""
     x, y = seen.window.centres_px.T
     x1, y1, x2, y2 = seen.box

@@ -26,12 +26,12 @@ from diorama_core.pose.posing_tasks import (
     PosingTask,
     candidates_of,
     likeliest_kinds,
-    ordered_shapes,
     posing_tasks,
+    sort_shapes,
 )
 from diorama_core.pose.refine import BoxFit
 from diorama_core.pose.room_evidence import Trials, TriedShape, facing_room, powers, wall_samples
-from diorama_core.pose.sets import agreed_ranks, shared_scales
+from diorama_core.pose.sets import equalise_scales, mix_ranks
 from diorama_core.pose.settings import SETTINGS, PoseSettings
 from diorama_core.processes import map_beside
 from diorama_core.progress import Progress
@@ -88,15 +88,15 @@ class RenderAndCompare:
         tasks = [task.with_facing(facings.costs_of(task.item.id)) for task in trials.tasks]
         pieces = list(zip(tasks, trials.tried, strict=True))
         tried = map_beside(self._pose_object, pieces, progress.part(0.5, 1.0), "Posing objects")
-        ranks = agreed_ranks(
+        ranks = mix_ranks(
             [task.item.category for task in tasks],
             [{posed.shape.id: posed.rank for posed in of_one} for of_one in tried],
             [task.fine.confidence(0.0, 1.0) for task in tasks],
             [task.max_loss for task in tasks],
             self.settings.search,
         )
-        ordered = [ordered_shapes(of_one, order) for of_one, order in zip(tried, ranks, strict=True)]
-        firsts = self._evened(tasks, [of_one[0] for of_one in ordered])
+        ordered = [sort_shapes(of_one, order) for of_one, order in zip(tried, ranks, strict=True)]
+        firsts = self._equalise_scales(tasks, [of_one[0] for of_one in ordered])
         ordered = [(first, *of_one[1:]) for first, of_one in zip(firsts, ordered, strict=True)]
         return tuple(candidates_of(*one, facings) for one in zip(tasks, ordered, ranks, strict=True))
 
@@ -126,11 +126,11 @@ class RenderAndCompare:
             tasks, tried, facing_room(geometry, kinds, tasks, tried, walls, self.settings.search), self.settings.search
         )
 
-    def _evened(self, tasks: Sequence[PosingTask], chosen: Sequence[PosedShape]) -> list[PosedShape]:
+    def _equalise_scales(self, tasks: Sequence[PosingTask], chosen: Sequence[PosedShape]) -> list[PosedShape]:
         """The chosen poses, those of one set equally large where that fits the picture hardly worse."""
         if not tasks:
             return []
-        scales = shared_scales(
+        scales = equalise_scales(
             [task.item.category for task in tasks],
             [posed.shape.id for posed in chosen],
             np.array([posed.pose.scale for posed in chosen]),
@@ -140,9 +140,9 @@ class RenderAndCompare:
             ],
             self.settings.search,
         )
-        return [self._rescaled(*one) for one in zip(tasks, chosen, scales, strict=True)]
+        return [self._rescale(*one) for one in zip(tasks, chosen, scales, strict=True)]
 
-    def _rescaled(self, task: PosingTask, posed: PosedShape, scale: Float[np.ndarray, "3"]) -> PosedShape:
+    def _rescale(self, task: PosingTask, posed: PosedShape, scale: Float[np.ndarray, "3"]) -> PosedShape:
         if np.array_equal(scale, posed.pose.scale):
             return posed
         R, axis = posed.pose.R_world_object, task.anchor.axis_world
@@ -211,10 +211,10 @@ class RenderAndCompare:
 
     def _pose_by_outline(self, task: PosingTask, tried: TriedShape) -> PosedShape:
         best = np.argsort(-tried.scores, kind="stable")[: self.refined]
-        poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
+        poses, error, score = self._select_best(task, tried, tried.hypotheses[best])
         of_retrieval, of_pose = powers(task.item.label, self.settings.search)
-        cost = task.fine.enlarged_cost(poses.scale[0], tried.limits) + task.fine.sure_outline_cost(error)
-        cost -= task.fine.seen_past(self._appearance(tried.shape).caster, poses)
+        cost = task.fine.enlargement_cost(poses.scale[0], tried.limits) + task.fine.sure_outline_cost(error)
+        cost -= task.fine.see_through_score(self._appearance(tried.shape).caster, poses)
         return PosedShape(tried.shape, _only(poses), error, of_retrieval * tried.liked + of_pose * score - cost)
 
     def _pose_by_depth(
@@ -224,15 +224,15 @@ class RenderAndCompare:
         fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
         count = self.refined_with_depth if promising else self.refined
         best = unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count, self.settings.search)
-        poses, error, score = self._chosen(task, tried, tried.hypotheses[best])
+        poses, error, score = self._select_best(task, tried, tried.hypotheses[best])
         if promising and fold < 3:
-            turned = measured.turned(poses, fold, tried.limits)
+            turned = measured.turn_by_quarters(poses, fold, tried.limits)
             nothing = np.zeros(len(turned))
-            other = self._chosen(task, tried, Hypotheses(turned, nothing, nothing))
+            other = self._select_best(task, tried, Hypotheses(turned, nothing, nothing))
             poses, error, score = max((poses, error, score), other, key=lambda pair: pair[2])
         return PosedShape(tried.shape, _only(poses), error, self._rank(task, measured, tried, poses, error))
 
-    def _chosen(self, task: PosingTask, tried: TriedShape, start: Hypotheses) -> tuple[PoseBatch, float, float]:
+    def _select_best(self, task: PosingTask, tried: TriedShape, start: Hypotheses) -> tuple[PoseBatch, float, float]:
         """The best of some poses and their refinements, with its error and score."""
         both, errors, scores = self._finely(task, tried, start)
         chosen = int(np.argmax(scores))
@@ -243,7 +243,7 @@ class RenderAndCompare:
     ) -> tuple[PoseBatch, Float[np.ndarray, "p"], Float[np.ndarray, "p"]]:
         """Some poses and their refinements, with errors and scores."""
         caster = self._appearance(tried.shape).caster
-        both = start.poses.and_also(self._refined(task, caster, tried.limits, start.poses))
+        both = start.poses.and_also(self._refine(task, caster, tried.limits, start.poses))
         errors = task.fine.errors(caster, both)
         off_axis, misfit = np.tile(start.off_axis_rad, 2), np.tile(start.misfit, 2)
         scores = task.fine.log_scores(errors, both, off_axis, misfit, tried.limits)
@@ -252,7 +252,7 @@ class RenderAndCompare:
             scores = scores - task.measured.elsewhere_cost(both, tried.limits, errors)
         return both, errors, scores
 
-    def compared_finely(self, task: PosingTask, tried: TriedShape, count: int) -> TriedShape:
+    def refine_best(self, task: PosingTask, tried: TriedShape, count: int) -> TriedShape:
         """A tried shape with its best unlike poses refined beside the others, which are worth a little less then.
 
         Args:
@@ -270,9 +270,9 @@ class RenderAndCompare:
         hypotheses = tried.hypotheses.and_also(refined)
         return replace(tried, hypotheses=hypotheses, scores=np.concatenate([others, scores]))
 
-    def _refined(self, task: PosingTask, caster: ShapeCaster, limits: SizeLimits, start: PoseBatch) -> PoseBatch:
+    def _refine(self, task: PosingTask, caster: ShapeCaster, limits: SizeLimits, start: PoseBatch) -> PoseBatch:
         if task.measured is not None:
-            return task.measured.fit(limits).refined(caster, start)
+            return task.measured.fit(limits).refine(caster, start)
         yaw_sigma = np.deg2rad(9.0 if category(task.item.category).quarter_turns_free else 4.0)
         foot_seen = task.cuboid.foot_seen
         fit = BoxFit(
@@ -284,7 +284,7 @@ class RenderAndCompare:
             foot_seen,
             settings=self.settings.search,
         )
-        return fit.refined(caster, start)
+        return fit.refine(caster, start)
 
     def _rank(
         self, task: PosingTask, measured: MeasuredObject, tried: TriedShape, poses: PoseBatch, error: float

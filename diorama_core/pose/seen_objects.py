@@ -15,7 +15,7 @@ from diorama_core.library.taxonomy import NEVER_OPEN, SETS
 from diorama_core.pose.details import InnerEdges
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.settings import SETTINGS, PoseSettings
-from diorama_core.pose.surface import measured_surface, noise_of
+from diorama_core.pose.surface import measure_surface, noise_of
 from diorama_core.scene.types import Pose
 from diorama_core.workers import map_threads
 
@@ -78,7 +78,7 @@ class SeenObject:
         )
 
 
-def seen_objects(
+def observe_objects(
     posed: Sequence[PosedCandidates],
     inputs: Inputs,
     objects: tuple[DetectedObject, ...],
@@ -105,12 +105,12 @@ def seen_objects(
     def evidence(k: int, cells: int) -> Evidence:
         item = items[k]
         window = observe_among(geometry.camera, items, centres, parents, k, cells, loads_apart=True)
-        surface = measured_surface(depth, window, item.mask, noise, settings.evidence)
+        surface = measure_surface(depth, window, item.mask, noise, settings.evidence)
         closed = surface is not None or item.category in NEVER_OPEN
         colours = None if closed else SeeThrough.of(inputs.photo.rgb, window, settings.evidence.see_through)
         return Evidence(geometry.camera, window, surface, colours, settings=settings.evidence)
 
-    def seen(k: int) -> SeenObject | None:
+    def observe(k: int) -> SeenObject | None:
         item, coarse = items[k], evidence(k, settings.shapes.cells)
         window = coarse.seen
         if float((window.covered * window.weight).sum()) < settings.shapes.min_cells:
@@ -128,4 +128,4 @@ def seen_objects(
         )
 
     shown = [k for k, item in enumerate(items) if item.id in pose_of]
-    return {items[k].id: one for k, one in zip(shown, map_threads(seen, shown), strict=True) if one is not None}
+    return {items[k].id: one for k, one in zip(shown, map_threads(observe, shown), strict=True) if one is not None}

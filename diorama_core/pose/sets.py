@@ -11,7 +11,7 @@ from diorama_core.library.taxonomy import SETS, UNKNOWN
 from diorama_core.pose.settings import SETTINGS, PoseSearchSettings
 
 
-def agreed_ranks(
+def mix_ranks(
     categories: Sequence[str],
     ranks: Sequence[Mapping[str, float]],
     trust: Sequence[float],
@@ -85,7 +85,7 @@ def _overlap(a: Mapping[str, float], b: Mapping[str, float]) -> float:
     return len(a.keys() & b.keys()) / len(a.keys() | b.keys())
 
 
-def shared_scales(
+def equalise_scales(
     categories: Sequence[str],
     shape_ids: Sequence[str],
     scales: Float[np.ndarray, "n 3"],

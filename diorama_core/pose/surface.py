@@ -53,7 +53,7 @@ class ObjectSurface:
 
     def agreement(self, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """0 to 1: nearness of depth and of normals over the object's measured cells."""
-        is_informative, weight = self._told, self.weight[self._told]
+        is_informative, weight = self._valid_cells, self.weight[self._valid_cells]
         depth, covered = hits.depth_m[:, is_informative], hits.is_hit[:, is_informative]
         off = (np.where(covered, depth, 0.0) - self.depth_m[is_informative]) / self.tolerance_m[is_informative]
         score = np.where(covered, np.exp(-(off**2)), 0.0)
@@ -63,7 +63,7 @@ class ObjectSurface:
         return (score @ weight) / max(float(weight.sum()), 1e-9)
 
     @cached_property
-    def _told(self) -> Int[np.ndarray, " k"]:
+    def _valid_cells(self) -> Int[np.ndarray, " k"]:
         """The object's measured cells: only they are compared."""
         return np.flatnonzero(self.weight > 0)
 
@@ -72,7 +72,7 @@ class ObjectSurface:
         return self.known & (self.weight == 0) & hits.is_hit & (hits.depth_m > self.depth_m + 2 * self.tolerance_m)
 
 
-def measured_surface(
+def measure_surface(
     depth: DepthMap,
     seen: Observed,
     mask: Bool[np.ndarray, "h w"],

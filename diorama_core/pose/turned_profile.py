@@ -22,7 +22,7 @@ from diorama_core.library.furniture.measures import can_be_made, can_be_turned, 
 from diorama_core.library.furniture.reshaping import GIRTH, KNOTS, MAX_PERCENT, MIN_PERCENT
 from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
 from diorama_core.pose.mask_observations import Evidence
-from diorama_core.pose.outline_fit import fitted_pose, resizing_cost
+from diorama_core.pose.outline_fit import fit_pose, resizing_cost
 from diorama_core.pose.settings import SETTINGS, PoseSettings, ShapeFitSettings
 from diorama_core.scene.types import Camera, Pose
 
@@ -87,7 +87,7 @@ class OutlineMap:
         return inside.reshape(shape), (in_front & (known >= self.settings.known) | inside).reshape(shape)
 
 
-def measured_girth(
+def measure_girth(
     outline: OutlineMap, mesh: trimesh.Trimesh, pose: Pose, settings: ShapeFitSettings
 ) -> tuple[int, ...] | None:
     """How much wider the body is than a shape at every knot of its height, percent; None where nothing is to be seen.
@@ -137,7 +137,7 @@ class Turned:
     """Mean disagreement, 0 to 1."""
 
 
-def turned(
+def fit_profile(
     library: ShapeLibrary,
     shape_id: str,
     evidence: Sequence[Evidence],
@@ -160,21 +160,21 @@ def turned(
     if len(mesh.faces) > settings.shapes.max_faces or not is_revolution(mesh, settings.shapes):
         return None
     profiles = [
-        measured_girth(OutlineMap(e.camera, e.seen, settings.shapes), mesh, p, settings.shapes)
+        measure_girth(OutlineMap(e.camera, e.seen, settings.shapes), mesh, p, settings.shapes)
         for e, p in zip(evidence, poses, strict=True)
     ]
     known_profiles = [g for g in profiles if g is not None]
     if not known_profiles:
         return None
     girth = tuple(int(v) for v in np.rint(np.median(known_profiles, axis=0)))
-    size = _widened(mesh, np.ptp(mesh.bounds, axis=0) * poses[0].scale, girth, settings.shapes)
+    size = _size_with_girth(mesh, np.ptp(mesh.bounds, axis=0) * poses[0].scale, girth, settings.shapes)
     if not can_be_made(shape_id, size):
         return None
     made = made_id(shape_id, size, {GIRTH: girth})
     caster = ShapeCaster(library.mesh(made))
     alone = len(poses) == 1
     fitted = [
-        fitted_pose(
+        fit_pose(
             e, caster, Pose(p.R_world_object, p.position, np.ones(3)), size, resize=alone, settings=settings.shapes
         )
         for e, p in zip(evidence, poses, strict=True)
@@ -194,7 +194,7 @@ def turned(
     return Turned(made_id(shape_id, whole, {GIRTH: girth}), whole, at_scale, now)
 
 
-def _widened(
+def _size_with_girth(
     mesh: trimesh.Trimesh, size_m: Float[np.ndarray, "3"], girth: tuple[int, ...], settings: ShapeFitSettings
 ) -> Float[np.ndarray, "3"]:
     """The size with this girth of a shape that has a size without it, whole millimetres."""

@@ -76,7 +76,7 @@ def gather(asked: PhotoPlan, library: ShapeLibrary, progress: Progress) -> list[
 def _finely(stage: RenderAndCompare, task: PosingTask, tried: Sequence[TriedShape]) -> list[TriedShape]:
     """An object's shapes, the likeliest with refined poses: what decides in the end."""
     best = sorted(tried, key=lambda t: -likelihood(task.item.label, t))[:SHAPES]
-    return [stage.compared_finely(task, t, POSES) if t in best else t for t in tried]
+    return [stage.refine_best(task, t, POSES) if t in best else t for t in tried]
 
 
 def _case(

@@ -33,7 +33,7 @@ from diorama_core.models.kind_evidence import (
     with_evidence,
 )
 from diorama_core.models.recogniser import Recogniser
-from diorama_core.perception.foundation.proposals import ranked_names
+from diorama_core.perception.foundation.proposals import rank_names
 from diorama_core.progress import Progress
 from diorama_core.retrieval.seen_kinds import TRUST
 from diorama_core.scene.values import ArrayValue
@@ -195,7 +195,7 @@ def _score(
     names: list[tuple[str, ...]] = []
     start = 0
     for p in looks:
-        names += ranked_names(kinds, seen[start : start + len(p.kinds)], p.boxes)
+        names += rank_names(kinds, seen[start : start + len(p.kinds)], p.boxes)
         start += len(p.kinds)
     first = np.mean([n[0] == kinds[k] for n, k in zip(names, truth, strict=True)])
     five = np.mean([kinds[k] in n[:5] for n, k in zip(names, truth, strict=True)])

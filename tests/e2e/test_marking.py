@@ -118,7 +118,7 @@ def test_twelve_objects_are_marked_in_a_minute(proposed: EditorPage, capsys: pyt
 
 
 def test_a_click_where_nothing_is_says_so(proposed: EditorPage, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("diorama_core.perception.foundation.proposals.clicked_box", lambda *_: None)
+    monkeypatch.setattr("diorama_core.perception.foundation.proposals.find_clicked_box", lambda *_: None)
     editor = proposed
     free = next(
         spot

@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.perception.inputs.sorting import recognised
+from diorama_core.perception.inputs.sorting import recognise
 from tests.fuzzing.mutate import Random, damaged, strange_json, strange_zip
 from tests.fuzzing.photo_readers import with_depth, with_masks
 from tests.perception.inputs.boxes.test_table import FORMS, SIZE, content
@@ -139,4 +139,4 @@ def sorting_samples() -> tuple[bytes, ...]:
 
 def read_sort(data: bytes) -> object:
     """What a dropped file is."""
-    return recognised(data, "file", (96, 64))
+    return recognise(data, "file", (96, 64))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import ArchitectureEstimate
-from diorama_core.perception.depth import MeasuredDepth, RenderedDepth, filled_depth
+from diorama_core.perception.depth import MeasuredDepth, RenderedDepth, fill_depth
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture
@@ -80,7 +80,7 @@ def test_holes_of_depth_and_of_normals_are_filled_one_by_one(shot):
     rendered = np.full((1, 3), 2.0, np.float32), np.tile(np.array([0, 0, 1], np.float32), (1, 3, 1))
     depth = np.array([[1.0, 0.0, 1.0]], np.float32)
     toward = np.array([[[0, 0, -1.0], [0, 0, -1.0], [0, 0, 0]]])
-    found = filled_depth(depth, toward, shot.camera, rendered, DepthSource.MEASURED)
+    found = fill_depth(depth, toward, shot.camera, rendered, DepthSource.MEASURED)
     back = -shot.camera.T_world_camera[:3, 2]
     np.testing.assert_allclose(found.depth_m, [[1, 2, 1]])
     np.testing.assert_allclose(found.normals_world, [[back, back, [0, 0, 1]]], atol=1e-6)

@@ -24,7 +24,7 @@ def room(seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
 
 
 def under(light: Illuminant, picture: np.ndarray) -> np.ndarray:
-    return np.rint(255 * light.lit(picture / 255.0)).astype(np.uint8)
+    return np.rint(255 * light.illuminate(picture / 255.0)).astype(np.uint8)
 
 
 def off_deg(a: Illuminant, b: Illuminant) -> float:
@@ -60,13 +60,13 @@ def test_a_picture_without_information_has_white_light(value):
 @given(st.lists(st.floats(0.05, 0.7), min_size=3, max_size=3), st.floats(0.8, 1.2), st.floats(0.8, 1.2))
 def test_albedo_undoes_light(colour, red, blue):
     light = Illuminant((red, 1.0, blue))
-    assert np.allclose(light.albedo(light.lit(np.array(colour))), colour, atol=1e-6)
+    assert np.allclose(light.albedo(light.illuminate(np.array(colour))), colour, atol=1e-6)
 
 
 def test_balanced_pictures_agree_with_albedo():
     picture, _ = room()
     expected = TUNGSTEN.albedo(picture / 255.0) * 255
-    assert np.abs(TUNGSTEN.balanced(picture) - expected).max() <= 0.51
+    assert np.abs(TUNGSTEN.white_balance(picture) - expected).max() <= 0.51
 
 
 @pytest.mark.parametrize("light", [TUNGSTEN, SHADE])

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 
 from diorama_core.artefacts import DetectedObject
-from diorama_core.pipeline.colours import photo_colours, shared_by_sets
+from diorama_core.pipeline.colours import photo_colours, share_set_colours
 
 
 def _object(name: str, category: str, mask: np.ndarray) -> DetectedObject:
@@ -52,7 +52,7 @@ def test_chairs_of_one_shape_share_the_surest_colour() -> None:
     small[:, 20:] = False
     objects = (_object("a", "chair", small), _object("b", "chair", big), _object("c", "chair", small))
     colours = {"a": (0.8, 0.0, 0.0), "b": (0.9, 0.0, 0.0), "c": (0.2, 0.2, 0.2)}
-    shared = shared_by_sets(colours, objects, {"a": "shell", "b": "shell", "c": "windsor"})
+    shared = share_set_colours(colours, objects, {"a": "shell", "b": "shell", "c": "windsor"})
     assert shared == {"a": (0.9, 0.0, 0.0), "b": (0.9, 0.0, 0.0), "c": (0.2, 0.2, 0.2)}
 
 
@@ -63,7 +63,7 @@ def test_chairs_that_differ_keep_their_colours_and_lend_them_to_their_like() -> 
     objects = tuple(_object(name, "chair", hidden if name == "d" else big) for name in "abcde")
     red, dark_red, blue = (0.8, 0.1, 0.1), (0.72, 0.08, 0.09), (0.1, 0.2, 0.7)
     colours = {"a": red, "b": blue, "c": dark_red, "d": (0.4, 0.4, 0.4)}
-    shared = shared_by_sets(colours, objects, dict.fromkeys("abcde", "shell"))
+    shared = share_set_colours(colours, objects, dict.fromkeys("abcde", "shell"))
     assert shared["b"] == blue
     assert shared["a"] == shared["c"]
     assert shared["d"] in (blue, shared["a"])
@@ -83,4 +83,4 @@ def test_lamps_of_one_shape_are_of_one_colour() -> None:
     _, big, small = _masks()
     objects = (_object("a", "lamp", small), _object("b", "lamp", big))
     colours = {"a": (0.2, 0.24, 0.2), "b": (0.25, 0.25, 0.24)}
-    assert set(shared_by_sets(colours, objects, {"a": "bell", "b": "bell"}).values()) == {colours["b"]}
+    assert set(share_set_colours(colours, objects, {"a": "bell", "b": "bell"}).values()) == {colours["b"]}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.artefacts import Cuboid, Inputs, ObjectGeometry, Photo
-from diorama_core.pipeline.given_stages import AsObserved, GivenCamera, GivenRoom, given_camera
+from diorama_core.pipeline.given_stages import AsObserved, GivenCamera, GivenRoom, exact_camera_estimate
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Scene, Support
@@ -20,7 +20,7 @@ def test_a_known_camera_is_the_only_reading() -> None:
     one = camera(0.0, -2.0, height_m=1.4)
     found = GivenCamera(one).estimate(GREY, Progress())
     assert len(found.hypotheses) == 1
-    assert found.height_m == given_camera(one).height_m == pytest.approx(1.4)
+    assert found.height_m == exact_camera_estimate(one).height_m == pytest.approx(1.4)
     np.testing.assert_array_equal(found.best.R_world_camera, one.T_world_camera[:3, :3])
 
 

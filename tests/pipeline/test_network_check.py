@@ -12,7 +12,7 @@ from diorama_app.projects.example import example_inputs
 from diorama_core.models.manifest import NETWORKS, network
 from diorama_core.models.store import ModelStore
 from diorama_core.pipeline import network_check, network_stages
-from diorama_core.pipeline.network_check import Measurement, check_networks, rejected
+from diorama_core.pipeline.network_check import Measurement, check_networks, delete_failing_networks
 from tests.models import small_graphs, tiny_networks
 from tests.models.tiny_networks import install
 
@@ -153,9 +153,9 @@ def test_what_arrives_without_a_checksum_and_does_not_work_is_deleted(tmp_path: 
     plain = {name: kind for name, kind in small_graphs.HQ_SAM.items() if name != "interm_embeddings"}
     masks = {"iou_predictions": np.full((1, 1), 0.9), "low_res_masks": np.full((1, 1, 256, 256), 2.0)}
     install(store, "hq-sam-base", [encoder, _answering(tmp_path / "other.onnx", plain, masks)])
-    (check,) = rejected(store, ("hq-sam-base",), example_inputs().inputs)
+    (check,) = delete_failing_networks(store, ("hq-sam-base",), example_inputs().inputs)
     assert "inputs" in check.words
     assert not store.has(network("hq-sam-base"))
     install(store, "hq-sam-base", _segmenter(tmp_path, 0.6))
-    assert rejected(store, ("hq-sam-base", "birefnet"), example_inputs().inputs) == ()
+    assert delete_failing_networks(store, ("hq-sam-base", "birefnet"), example_inputs().inputs) == ()
     assert store.has(network("hq-sam-base"))

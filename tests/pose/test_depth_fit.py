@@ -18,7 +18,7 @@ from diorama_core.pose.hypotheses import anchor_of
 from diorama_core.pose.limits import SizeLimits
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
-from diorama_core.pose.surface import measured_surface, noise_of
+from diorama_core.pose.surface import measure_surface, noise_of
 from diorama_core.scene.types import yaw_rotation
 from tests.pose.rooms import LIBRARY, Room, camera_at, standing, yaw_error_deg
 
@@ -33,7 +33,7 @@ def measured(
     centres = np.array([c.centre for c in room.geometry.cuboids])
     seen = observe_among(room.camera, room.objects, centres, [None] * len(centres), index, 56)
     depth = depth or room.depth(True)
-    surface = measured_surface(depth, seen, item.mask, noise_of(depth))
+    surface = measure_surface(depth, seen, item.mask, noise_of(depth))
     evidence = Evidence(room.camera, seen, surface)
     anchor = anchor_of(cuboid, False, room.camera.position[:2] - cuboid.centre[:2])
     found = MeasuredObject.of(item.mask, evidence, cuboid, anchor, NO_WALLS, floor_foot_m)
@@ -63,7 +63,7 @@ def test_a_displaced_chair_finds_back(yaw: float, shift: tuple, turn: float, fac
         (true.position + shift)[None],
         true.scale[None] * factor,
     )
-    found = fit.refined(caster, start)
+    found = fit.refine(caster, start)
     before, after = (float(np.linalg.norm(p.position[0] - true.position)) for p in (start, found))
     assert after < max(0.3 * before, 0.03)
     assert yaw_error_deg(replace(true, R_world_object=found.R[0]), true, 1) < 5.0
@@ -74,7 +74,7 @@ def test_a_stretched_table_is_measured_along_every_axis() -> None:
     room = Room(camera_at(), (standing("table", 0.0, 3.0, 25.0, (1.1, 0.9, 1.08)),), (0,))
     fit, caster = fit_of(room)
     true = room.placed[0].pose
-    found = fit.refined(caster, fit.starts(true.R_world_object[None]))
+    found = fit.refine(caster, fit.starts(true.R_world_object[None]))
     assert np.abs(found.scale[0] / true.scale - 1).max() < 0.05
     assert np.linalg.norm(found.position[0] - true.position) < 0.03
 
@@ -87,7 +87,7 @@ def test_noise_and_holes_in_the_depth_are_survived() -> None:
     noisy[rng.random(noisy.shape) < 0.3] = 0.0
     fit, caster = fit_of(room, depth=replace(exact, depth_m=noisy.astype(np.float32)))
     true = room.placed[0].pose
-    found = fit.refined(caster, fit.starts(true.R_world_object[None]))
+    found = fit.refine(caster, fit.starts(true.R_world_object[None]))
     assert np.linalg.norm(found.position[0] - true.position) < 0.06
     assert np.abs(found.scale[0] / true.scale - 1).max() < 0.12
 

@@ -98,7 +98,7 @@ def told(details: Details, seen: Observed, shape: ShapeAppearance) -> tuple[floa
     """Share of colours explained, and the log likelihood."""
     batch = PoseBatch(POSE.R_world_object[None], POSE.position[None], POSE.scale[None])
     hits = shape.caster.cast(seen.origin_world, seen.directions_world, batch)
-    return details.explained_by_parts(shape, hits), details.log_likelihood(shape, hits)
+    return details.share_between_parts(shape, hits), details.log_likelihood(shape, hits)
 
 
 @pytest.mark.parametrize("brightness", [0.4, 1.0])

@@ -71,7 +71,7 @@ def ranked(
     inputs = Inputs(Photo(rgb, "photo", (k.width, k.height)))
     stage = replace(STAGE, library=library)
     depth = DepthMap(seen.depth_m, seen.normals_world, source)
-    (out,) = stage.fitted((posed,), inputs, (item,), geometry, depth, Progress())
+    (out,) = stage.fit((posed,), inputs, (item,), geometry, depth, Progress())
     return out.candidates
 
 

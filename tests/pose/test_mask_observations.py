@@ -25,7 +25,7 @@ def enlarged_cost(evidence: Evidence, shape_size_m: tuple[float, float, float], 
     """Cost of an enlarged doubtful mask."""
     evidence = replace(evidence, seen=replace(evidence.seen, mask_trust=0.6))
     limits = SizeLimits.of(shape_size_m, "blanket", np.array([0.6, 0.9, 0.15]))
-    return evidence.enlarged_cost(np.array(scale), limits)
+    return evidence.enlargement_cost(np.array(scale), limits)
 
 
 def test_a_folded_blanket_twice_as_large_is_less_likely_than_a_throw_of_its_size(evidence: Evidence) -> None:
@@ -54,7 +54,7 @@ def test_a_sure_outline_tells_shapes_apart_whatever_their_size(evidence: Evidenc
     limits = SizeLimits.of((0.34, 0.42, 0.3), "blanket", np.array([0.6, 0.9, 0.15]))
     sure = replace(evidence, seen=replace(evidence.seen, mask_trust=1.0))
     doubtful = replace(evidence, seen=replace(evidence.seen, mask_trust=0.5))
-    assert sure.enlarged_cost(np.full(3, 2.0), limits) == 0.0 < doubtful.enlarged_cost(np.full(3, 2.0), limits)
+    assert sure.enlargement_cost(np.full(3, 2.0), limits) == 0.0 < doubtful.enlargement_cost(np.full(3, 2.0), limits)
 
     def lead(of: Evidence) -> float:
         return of.sure_outline_cost(0.4) - of.sure_outline_cost(0.1)
@@ -97,7 +97,7 @@ def test_a_shape_that_is_open_where_one_sees_past_the_object_is_likelier(evidenc
     shown = evidence.seen.silhouettes(caster, poses)[0].astype(float)
     told = SeeThrough(evidence.seen.window, shown, np.ones(len(shown)), 0.8)
     smaller = PoseBatch(poses.R, poses.position, 0.5 * poses.scale)
-    right, wrong = (replace(evidence, see_through=told).seen_past(caster, p) for p in (poses, smaller))
+    right, wrong = (replace(evidence, see_through=told).see_through_score(caster, p) for p in (poses, smaller))
     assert right == pytest.approx(0.0, abs=1e-6)
     assert wrong < right - 0.3
-    assert evidence.seen_past(caster, smaller) == 0.0
+    assert evidence.see_through_score(caster, smaller) == 0.0

@@ -15,7 +15,7 @@ from diorama_core.library.catalogue import base_id
 from diorama_core.library.furniture.measures import made_by_id, parameters, values_of
 from diorama_core.pose import parameter_fit
 from diorama_core.pose.made_to_measure import MadeToMeasure
-from diorama_core.pose.outline_fit import FitRange, fitted_pose
+from diorama_core.pose.outline_fit import FitRange, fit_pose
 from diorama_core.pose.parameter_fit import can_have, level_cost
 from diorama_core.scene.types import Pose
 from tests.pose import test_made_to_measure
@@ -75,9 +75,9 @@ def test_what_a_fit_or_its_finer_steps_bring_is_not_enough_for_what_needs_more(
 
     def counted(*args: Any, near: FitRange, **settings: Any) -> Pose:
         taken.append(near.steps)
-        return fitted_pose(*args, near=near, **settings)
+        return fit_pose(*args, near=near, **settings)
 
-    monkeypatch.setattr(parameter_fit, "fitted_pose", counted)
+    monkeypatch.setattr(parameter_fit, "fit_pose", counted)
     left_to_finely = {"promising_with_depth": np.inf} if bound == "finely" else {}
     monkeypatch.setattr(test_made_to_measure, "STAGE", stage_with(**left_to_finely))
     quickly = fitted("table-walnut-splay", "table-oak-classic", scale=(0.94, 0.94, 1.0))

@@ -18,7 +18,7 @@ from diorama_core.artefacts import (
 )
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.pose import RenderAndCompare
-from diorama_core.pose.posing_tasks import PosedShape, PosingTask, likeliest_kinds, ordered_shapes, posing_tasks
+from diorama_core.pose.posing_tasks import PosedShape, PosingTask, likeliest_kinds, posing_tasks, sort_shapes
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, ScaleSource
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Support
@@ -81,7 +81,7 @@ def test_names_say_what_things_are_and_shapes_what_nameless_ones_may_be() -> Non
 def test_shapes_are_ordered_by_rank_and_then_by_name() -> None:
     pose = Pose(np.eye(3), np.zeros(3), np.ones(3))
     shapes = [PosedShape(LIBRARY.shape(name), pose, 0.1, 0.0) for name in ("table", "chair", "bed")]
-    found = ordered_shapes(shapes, {"table": 0.0, "chair": 0.0, "bed": 1.0})
+    found = sort_shapes(shapes, {"table": 0.0, "chair": 0.0, "bed": 1.0})
     assert [one.shape.id for one in found] == ["bed", "chair", "table"]
 
 

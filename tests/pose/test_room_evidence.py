@@ -23,7 +23,7 @@ def test_a_picture_prefers_headings_near_the_true_one_and_fine_poses_all_the_mor
     chair = found.room.objects[0]
     off = np.abs(np.mod(np.rad2deg(chair.yaw_rad) + 15 * np.arange(24) - 30 + 180, 360) - 180)
     assert off[chair.picture.argmax()] <= 30
-    fine = STAGE.compared_finely(found.tasks[0], found.tried[0][0], 4)
+    fine = STAGE.refine_best(found.tasks[0], found.tried[0][0], 4)
     assert len(fine.scores) == len(found.tried[0][0].scores) + 8
     finer = found.with_shapes([[fine, *found.tried[0][1:]], *found.tried[1:]])
     assert off[finer.room.objects[0].picture.argmax()] <= 30

@@ -10,7 +10,7 @@ import pytest
 from diorama_core.geometry.observed import observe
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.pose.mask_observations import Evidence
-from diorama_core.pose.turned_profile import is_revolution, profile_m, turned
+from diorama_core.pose.turned_profile import fit_profile, is_revolution, profile_m
 from diorama_core.render.raycast import render_buffers
 from diorama_core.scene.types import Pose
 from tests.pose.rooms import camera_at
@@ -44,7 +44,7 @@ def as_large(shape_id: str, pose: Pose, true_id: str) -> Pose:
 def test_a_cylinder_becomes_the_round_vase_that_is_seen(hidden_left: bool) -> None:
     true_id, found_id = "vase-moon-stone", "vase-cylinder-glass"
     evidence, pose = seen(true_id, hidden_left)
-    found = turned(LIBRARY, found_id, [evidence], [as_large(found_id, pose, true_id)], 0.4)
+    found = fit_profile(LIBRARY, found_id, [evidence], [as_large(found_id, pose, true_id)], 0.4)
     assert found is not None
     assert found.error < 0.1
     shares = np.linspace(-0.4, 0.4, 9)
@@ -55,13 +55,13 @@ def test_a_cylinder_becomes_the_round_vase_that_is_seen(hidden_left: bool) -> No
 
 def test_what_agrees_as_well_as_it_is_keeps_its_profile() -> None:
     evidence, pose = seen("vase-moon-stone")
-    assert turned(LIBRARY, "vase-moon-stone", [evidence], [pose], 0.01) is None
+    assert fit_profile(LIBRARY, "vase-moon-stone", [evidence], [pose], 0.01) is None
 
 
 def test_what_is_no_body_of_revolution_is_not_turned() -> None:
     evidence, pose = seen("vase-moon-stone")
-    assert turned(LIBRARY, "plant-olive", [evidence], [pose], 0.9) is None
-    assert turned(LIBRARY, "dresser-white-four", [evidence], [pose], 0.9) is None
+    assert fit_profile(LIBRARY, "plant-olive", [evidence], [pose], 0.9) is None
+    assert fit_profile(LIBRARY, "dresser-white-four", [evidence], [pose], 0.9) is None
 
 
 @pytest.mark.parametrize(

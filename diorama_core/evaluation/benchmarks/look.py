@@ -184,7 +184,7 @@ def _one_room(
     fit = MadeToMeasure(RenderAndCompare(library), library)
     posed = fit.stage.pose(seen.inputs, seen.objects, seen.geometry, seen.depth, offered, Progress())
     start = time.process_time()
-    made = fit.fitted(posed, seen.inputs, seen.objects, seen.geometry, seen.depth, Progress())
+    made = fit.fit(posed, seen.inputs, seen.objects, seen.geometry, seen.depth, Progress())
     made_s = time.process_time() - start
     fitted, known = (seen.evaluate(("posed_scene",), posed=p, library=library) for p in (posed, made))
     before, after, balanced = fitted["posed_scene"], known["posed_scene"], known["balanced_inputs"].photo.rgb

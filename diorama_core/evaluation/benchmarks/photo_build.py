@@ -75,7 +75,7 @@ def _floor_picture(
     built: Built, objects: tuple[DetectedObject, ...], standing: frozenset[str]
 ) -> UInt8[np.ndarray, "_ _ 3"]:
     room, camera = built.architecture.architecture, built.geometry.camera
-    photo = replace(built.inputs.photo, rgb=built.illuminant.balanced(built.inputs.photo.rgb))
+    photo = replace(built.inputs.photo, rgb=built.illuminant.white_balance(built.inputs.photo.rgb))
     inputs = replace(built.inputs, photo=photo)
     room = replace(room, planes=coloured(room.planes, inputs.photo.rgb, camera, objects))
     assert room.floor is not None
@@ -265,7 +265,7 @@ def _objects(name: str, case: AnnotatedInputs, built: Built, library: ShapeLibra
     index_of = {item.id: index for index, item in by_index.items()}
     furniture = {o.mask_id - 1 for o in built.objects}
     shown = visible_colours(built.scene, library, built.textures)
-    in_light = {key: built.illuminant.lit(colour) for key, colour in shown.items()}
+    in_light = {key: built.illuminant.illuminate(colour) for key, colour in shown.items()}
     results = (
         measure(name, i, annotated, by_index[i], built.scene, library, index_of, in_light.get(by_index[i].id))
         if i in by_index

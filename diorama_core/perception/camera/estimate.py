@@ -43,7 +43,7 @@ class EmbeddedCamera:
     def estimate(self, inputs: Inputs, progress: Progress) -> CameraEstimate:
         """The readings of one photo, best first; never fails on a picture without lines, but says so."""
         photo = inputs.photo
-        given, stated = _stated_intrinsics(inputs)
+        given, stated = _intrinsics_from_inputs(inputs)
         progress.report(0.1, "looking for straight lines")
         segments = _without_frame_edges(line_segments_px(photo.rgb), photo, self.settings)
         assumed = given or _habitual_intrinsics(photo, self.settings.focal_prior[0])
@@ -81,7 +81,7 @@ def _without_frame_edges(
     return segments_px[~(straight & near).any(axis=1)]
 
 
-def _stated_intrinsics(inputs: Inputs) -> tuple[Intrinsics | None, FocalSource | None]:
+def _intrinsics_from_inputs(inputs: Inputs) -> tuple[Intrinsics | None, FocalSource | None]:
     photo = inputs.photo
     if inputs.intrinsics is not None:
         return inputs.intrinsics, FocalSource.GIVEN

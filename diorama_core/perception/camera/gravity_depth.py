@@ -118,7 +118,7 @@ def _level_direction(samples: _Samples, up_expected: Float[np.ndarray, "3"]) -> 
     All candidates are weighed at once; the best is refined by least squares on the normals that agree.
     """
     near = samples.normals @ up_expected > np.cos(UP_CONE_RAD)
-    normals, areas = samples.normals[near], _tempered(samples.areas[near])
+    normals, areas = samples.normals[near], _area_weights(samples.areas[near])
     if len(normals) < 30:
         return None
     candidates = normals[_spread(len(normals), SETTINGS.max_trials)]
@@ -148,7 +148,7 @@ def _spread(total: int, count: int) -> Int[np.ndarray, "m"]:
     return np.linspace(0, total - 1, min(count, total)).astype(int)
 
 
-def _tempered(areas: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+def _area_weights(areas: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
     """Relative weights between pixels and areas: far points are few, but noisy."""
     return np.sqrt(areas / areas.mean()) if len(areas) else areas
 
@@ -168,11 +168,11 @@ def _floor(samples: _Samples, up: Float[np.ndarray, "3"]) -> tuple[Float[np.ndar
         low = max(0, start - 5)
         height = float(edges[low + int(broad[low : start + 1].argmax())]) + 0.5 * SETTINGS.bin_m
         if (all_drops > height + 0.06 + 0.03 * height).mean() < SETTINGS.below_share:
-            return _fitted_floor(samples, level, up, height)
+            return _fit_floor(samples, level, up, height)
     return None
 
 
-def _fitted_floor(
+def _fit_floor(
     samples: _Samples, level: Bool[np.ndarray, "n"], up: Float[np.ndarray, "3"], height: float
 ) -> tuple[Float[np.ndarray, "3"], float]:
     """The direction that fits the floor's points and the walls' normals best, each trusted as far as it reaches.
@@ -211,7 +211,7 @@ def _wall_direction(
     if upright.sum() < 30:
         return along, 0.0
     chosen = np.flatnonzero(upright)[_spread(int(upright.sum()), SETTINGS.max_voters)]
-    normals, weights = samples.normals[chosen], _tempered(samples.areas[chosen])
+    normals, weights = samples.normals[chosen], _area_weights(samples.areas[chosen])
     headings = np.arctan2(normals @ across, normals @ along)
     trials = np.deg2rad(np.arange(-45.0, 45.0, 0.5))
     turn = (headings[:, None] - trials + np.pi / 4) % (np.pi / 2) - np.pi / 4

@@ -130,8 +130,8 @@ def search_frames(lines: Lines, focal: float | None, settings: LineCameraSetting
             for s, R in _coarse_frames(lines, float(f), settings)
         ]
     starts.sort(key=lambda s: -s[0])
-    chosen = _separated(starts, _REFINED)
-    fits = sorted((_refined(lines, R, f, focal, settings) for _, R, f in chosen), key=lambda fit: -fit.score)
+    chosen = _select_distinct(starts, _REFINED)
+    fits = sorted((_refine(lines, R, f, focal, settings) for _, R, f in chosen), key=lambda fit: -fit.score)
     return tuple(fits[:_REFINED])
 
 
@@ -164,10 +164,10 @@ def _coarse_frames(
     scores = agreement.max(axis=1) @ lines.weights + settings.prior_weight * grid.log_prior[top]
     order = np.argsort(-scores, kind="stable")
     ranked = [(float(scores[i]), grid.frames[top[i]], focal) for i in order]
-    return [(score, R) for score, R, _ in _separated(ranked, _REFINED)]
+    return [(score, R) for score, R, _ in _select_distinct(ranked, _REFINED)]
 
 
-def _separated(
+def _select_distinct(
     ranked: list[tuple[float, Float[np.ndarray, "3 3"], float]], count: int
 ) -> list[tuple[float, Float[np.ndarray, "3 3"], float]]:
     """The best that differ from all better ones by more than five degrees (or ten percent of focal length)."""
@@ -186,7 +186,7 @@ def _separated(
     return distinct
 
 
-def _refined(
+def _refine(
     lines: Lines,
     R_start: Float[np.ndarray, "3 3"],
     focal_start: float,
@@ -198,10 +198,10 @@ def _refined(
     free = 3 if known is not None else 4
     for sigma in np.array([2.0, 1.7, 1.4, 1.2, 1.0, 1.0, 1.0, 1.0]) * SIGMA_RAD:
         step = _gauss_newton_step(lines, R, focal, float(sigma), free, known, settings)
-        R, focal = _moved(R, focal, step, known, settings)
+        R, focal = _apply_step(R, focal, step, known, settings)
     for _ in range(5):
         step = _gauss_newton_step(lines, R, focal, _own_sigma(lines, R, focal), free, known, settings)
-        R, focal = _moved(R, focal, step, known, settings)
+        R, focal = _apply_step(R, focal, step, known, settings)
     R = world_frame(R[2], R[1])
     best = _agreement(signed_sines(lines, R, focal)).max(axis=0)
     support = float(best @ lines.weights)
@@ -209,7 +209,7 @@ def _refined(
     return FrameFit(R, focal, support, support + float(prior) + _focal_log_prior(focal, known, settings))
 
 
-def _moved(
+def _apply_step(
     R: Float[np.ndarray, "3 3"],
     focal: float,
     step: Float[np.ndarray, "free"],

@@ -16,7 +16,7 @@ from diorama_core.artefacts import (
 )
 from diorama_core.models.seen_depth import GeometryNetwork
 from diorama_core.perception.camera.estimate import EmbeddedCamera
-from diorama_core.perception.depth import filled_depth, render_geometry
+from diorama_core.perception.depth import fill_depth, render_geometry
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, FocalSource
 from diorama_core.scene.types import Intrinsics
@@ -88,4 +88,4 @@ class NetworkDepth:
             raise ValueError("NetworkDepth needs depth and normals from a network; use RenderedDepth without them")
         progress.report(0.0, "Filling holes of the depth")
         rendered = render_geometry(geometry, objects, architecture.architecture)
-        return filled_depth(inputs.depth_m, inputs.normals_camera, geometry.camera, rendered, DepthSource.NETWORK)
+        return fill_depth(inputs.depth_m, inputs.normals_camera, geometry.camera, rendered, DepthSource.NETWORK)

@@ -16,7 +16,7 @@ from diorama_core.models.owlv2 import BoxDetector
 from diorama_core.models.own_files import FileDetector
 from diorama_core.models.segment_anything import BoxSegmenter
 from diorama_core.models.yolox import COCO_CLASSES, Yolox
-from diorama_core.perception.masks import LOST_CONFIDENCE, Outlined, filled_box, outlined
+from diorama_core.perception.masks import LOST_CONFIDENCE, Outlined, box_mask, outline_objects
 from diorama_core.progress import Progress
 
 INDOOR_WORDS: tuple[str, ...] = tuple(
@@ -71,7 +71,7 @@ class OpenVocabularyDetection:
         detections = self.detector.detect(photo.rgb, phrases, self.threshold, progress.part(0.0, 0.9))
         progress.report(0.9, "Sorting out double boxes")
         detections = without_doubles(detections, self.double_iou, across_classes=True)
-        return _labelled(detections, asked, self.part_share)
+        return _label_boxes(detections, asked, self.part_share)
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class EverydayDetection:
         detections = self.detector.detect(photo.rgb, self.threshold)
         inside = np.array([COCO_CLASSES[k] in _IN_ROOMS for k in detections.labels], dtype=bool)
         names = tuple(_WORDS.get(name, name) for name in COCO_CLASSES)
-        return _labelled(detections.rows(np.flatnonzero(inside)), names, self.part_share)
+        return _label_boxes(detections.rows(np.flatnonzero(inside)), names, self.part_share)
 
 
 @dataclass(frozen=True)
@@ -113,10 +113,10 @@ class FileDetection:
         detections = self.detector.detect(photo.rgb, self.threshold)
         names = tuple(_WORDS.get(name, name) for name in self.detector.labels)
         known = np.array([resolve(names[k]).exact for k in detections.labels], dtype=bool)
-        return _labelled(detections.rows(np.flatnonzero(known)), names, self.part_share)
+        return _label_boxes(detections.rows(np.flatnonzero(known)), names, self.part_share)
 
 
-def _labelled(detections: Detections, names: tuple[str, ...], part_share: float) -> tuple[LabelledBox, ...]:
+def _label_boxes(detections: Detections, names: tuple[str, ...], part_share: float) -> tuple[LabelledBox, ...]:
     """One box per object, in the project's categories."""
     categories = [resolve(name) for name in names]
     # A sofa found within a sectional sofa is its half: special kinds count as their broader one.
@@ -151,7 +151,7 @@ class PromptedMasks:
 
     def segment(self, inputs: Inputs, progress: Progress) -> tuple[DetectedObject, ...]:
         """One object per instance the user masked and per box no mask belongs to, in the order given."""
-        return outlined(inputs, self._outline_boxes, progress)
+        return outline_objects(inputs, self._outline_boxes, progress)
 
     def _outline_boxes(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: list[LabelledBox], progress: Progress) -> Outlined:
         if not boxes:
@@ -161,14 +161,14 @@ class PromptedMasks:
         masks = self.segmenter.masks(rgb, np.array([b.box for b in boxes]))
         for done, (box, prompted) in enumerate(zip(boxes, masks, strict=True)):
             progress.report(done / len(boxes), f"Outlining objects ({done + 1} of {len(boxes)})")
-            mask = prompted.mask & filled_box(rgb.shape[:2], _widened(box, rgb.shape[1], rgb.shape[0]))
-            whole = filled_box(rgb.shape[:2], box.box)
+            mask = prompted.mask & box_mask(rgb.shape[:2], _widen_box(box, rgb.shape[1], rgb.shape[0]))
+            whole = box_mask(rgb.shape[:2], box.box)
             lost = mask.sum() < _MIN_SHARE * whole.sum()
             results.append((whole, LOST_CONFIDENCE) if lost else (mask, max(prompted.quality, LOST_CONFIDENCE)))
         return results
 
 
-def _widened(box: LabelledBox, width: int, height: int) -> tuple[float, float, float, float]:
+def _widen_box(box: LabelledBox, width: int, height: int) -> tuple[float, float, float, float]:
     x1, y1, x2, y2 = box.box
     dx, dy = _MARGIN * (x2 - x1), _MARGIN * (y2 - y1)
     return max(0.0, x1 - dx), max(0.0, y1 - dy), min(float(width), x2 + dx), min(float(height), y2 + dy)

@@ -60,7 +60,7 @@ class EmptyRoomArchitecture:
         empty = self.filler.fill(rgb, hole)
         progress.report(0.5, "Reading the depth of the empty room")
         seen = self.depth_prediction.predict(empty, inputs.intrinsics)
-        depth, normals = _completed(inputs, seen, hole)
+        depth, normals = _complete_depth(inputs, seen, hole)
         cleared = replace(
             inputs,
             photo=replace(inputs.photo, rgb=empty),
@@ -85,7 +85,7 @@ class EmptyRoomArchitecture:
         return cv2.dilate(items.astype(np.uint8), np.ones((2 * reach + 1,) * 2, np.uint8)).astype(bool)
 
 
-def _completed(
+def _complete_depth(
     inputs: Inputs, seen: SeenDepth, hole: Bool[np.ndarray, "h w"]
 ) -> tuple[Float32[np.ndarray, "h w"], Float32[np.ndarray, "h w 3"]]:
     """The photo's depth where the room itself is seen; in the hole the emptied picture's, scaled to agree around it."""

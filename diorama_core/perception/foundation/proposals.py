@@ -83,10 +83,10 @@ class JoinedDetection:
         """
         everyday = self.everyday.detect(photo, words, progress.part(0.0, 0.5))
         own_boxes = self.own.detect(photo, words, progress.part(0.5, 1.0))
-        return joined_boxes(everyday, own_boxes)
+        return join_boxes(everyday, own_boxes)
 
 
-def joined_boxes(everyday: Sequence[LabelledBox], own_boxes: Sequence[LabelledBox]) -> tuple[LabelledBox, ...]:
+def join_boxes(everyday: Sequence[LabelledBox], own_boxes: Sequence[LabelledBox]) -> tuple[LabelledBox, ...]:
     """Boxes of both, best first; of two that overlap the everyday detector's stays, since it learnt from photos."""
     known = np.array([b.box for b in everyday], dtype=float).reshape(-1, 4)
     boxes = np.array([b.box for b in own_boxes], dtype=float).reshape(-1, 4)
@@ -95,13 +95,13 @@ def joined_boxes(everyday: Sequence[LabelledBox], own_boxes: Sequence[LabelledBo
     return tuple(sorted((*everyday, *new), key=lambda b: -b.score))
 
 
-def left_out(stage: OwnDetection | JoinedDetection, photo: Photo) -> int:
+def count_left_out(stage: OwnDetection | JoinedDetection, photo: Photo) -> int:
     """How many likely objects a build did not use, because it takes only those of which the recogniser is sure."""
     own_stage = stage if isinstance(stage, OwnDetection) else stage.own
     likely = OwnDetection(own_stage.recogniser, LIKELY, own_stage.most).detect(photo, (), Progress())
     unsure = [box for box in likely if box.score < own_stage.threshold]
     known = () if isinstance(stage, OwnDetection) else stage.everyday.detect(photo, (), Progress())
-    return len(joined_boxes(known, unsure)) - len(known)
+    return len(join_boxes(known, unsure)) - len(known)
 
 
 def clickable(recogniser: Recogniser, photo: Photo, known: Sequence[LabelledBox] = ()) -> Detections:
@@ -117,7 +117,7 @@ def clickable(recogniser: Recogniser, photo: Photo, known: Sequence[LabelledBox]
     return join((faint, Detections(corners, np.ones(len(known)), np.zeros(len(known), dtype=int))))
 
 
-def clicked_box(detections: Detections, x: float, y: float) -> Box | None:
+def find_clicked_box(detections: Detections, x: float, y: float) -> Box | None:
     """The box that somebody means who clicks at (x, y), in photo pixels; None where no box holds the pixel."""
     low, high = detections.boxes[:, :2], detections.boxes[:, 2:]
     offset = (np.array([x, y]) - (low + high) / 2) / np.maximum(high - low, 1.0)
@@ -141,10 +141,10 @@ def names_of(
         boxes: in photo pixels.
         known: what a network found in the photo; its words count for the boxes that are the same.
     """
-    return ranked_names(recogniser.categories, recogniser.name(photo.rgb, boxes), boxes, known)
+    return rank_names(recogniser.categories, recogniser.name(photo.rgb, boxes), boxes, known)
 
 
-def ranked_names(
+def rank_names(
     categories: Sequence[str],
     seen: Float[np.ndarray, "n k"],
     boxes: Float[np.ndarray, "n 4"],

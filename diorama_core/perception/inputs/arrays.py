@@ -30,7 +30,7 @@ def photo_file(photo: Path | str | bytes | Picture) -> Path | bytes:
     """The photo as a path or the content of a file; raises `InputError` when an array is no picture."""
     if isinstance(photo, Path | str | bytes):
         return _file(photo)
-    return _encoded(photo, "PPM", "photo", "h x w x 3 of uint8")
+    return _encode(photo, "PPM", "photo", "h x w x 3 of uint8")
 
 
 def masks_file(masks: Path | str | bytes | Masks | None) -> Path | bytes | None:
@@ -39,7 +39,7 @@ def masks_file(masks: Path | str | bytes | Masks | None) -> Path | bytes | None:
         return None if masks is None else _file(masks)
     if not np.issubdtype(masks.dtype, np.integer) or not masks.size or masks.min() < 0 or masks.max() > MAX_ID:
         raise InputError(f"masks: give an array of integer ids, 0 (background) to {MAX_ID}, one for each pixel")
-    return _encoded(masks.astype(np.uint16), "PNG", "masks", "h x w of integers")
+    return _encode(masks.astype(np.uint16), "PNG", "masks", "h x w of integers")
 
 
 def depth_file(depth: Path | str | bytes | Depth | None) -> Path | bytes | None:
@@ -72,7 +72,7 @@ def _plain(value: object) -> object:
     raise TypeError(f"{value!r} is not a number, a string or a list")
 
 
-def _encoded(pixels: np.ndarray, kind: str, what: str, shape: str) -> bytes:
+def _encode(pixels: np.ndarray, kind: str, what: str, shape: str) -> bytes:
     buffer = io.BytesIO()
     try:
         Image.fromarray(pixels).save(buffer, kind)

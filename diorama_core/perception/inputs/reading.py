@@ -13,7 +13,7 @@ import numpy as np
 
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.boxes.agreement import is_upside_down, turned_box
+from diorama_core.perception.inputs.boxes.agreement import is_upside_down, rotate_box_180
 from diorama_core.perception.inputs.boxes.reading import read_boxes
 from diorama_core.perception.inputs.depth.kinds import DepthKind
 from diorama_core.perception.inputs.depth.reading import DepthEncoding, DepthOptions, read_depth
@@ -93,7 +93,7 @@ def read_inputs(
     matched: tuple[tuple[int, LabelledBox], ...] = ()
     if boxes is not None:
         labelled, notes = read_boxes(read_source(boxes, "boxes"), unturned)
-        labelled = tuple(turned_box(b, photo) for b in labelled) if half_turn else labelled
+        labelled = tuple(rotate_box_180(b, photo) for b in labelled) if half_turn else labelled
         warnings += notes
         if is_upside_down(labelled, photo.height):
             warnings.append("the photo seems to be upside down: turn it with its boxes (Turn photo, or --half-turn)")

@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image
 
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parsed
+from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parse_box_text
 from diorama_core.perception.inputs.depth.channels import depth_of_colours
 from diorama_core.perception.inputs.depth.confidence import is_confidence
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
@@ -36,7 +36,7 @@ class Recognised:
     """For people, as in "COCO data set"."""
 
 
-def recognised(content: bytes, name: str, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
+def recognise(content: bytes, name: str, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
     """What a file may be, likeliest first; several where its content leaves that open.
 
     Args:
@@ -64,14 +64,14 @@ def recognised(content: bytes, name: str, photo_size: tuple[int, int] | None) ->
     return _recognise_text(source)
 
 
-def recognised_alone(content: bytes, name: str) -> tuple[Recognised, ...]:
+def recognise_alone(content: bytes, name: str) -> tuple[Recognised, ...]:
     """What a file may be by itself: a picture may be depth or masks of any photo.
 
     Raises:
         InputError: nothing that is read.
     """
     picture = _picture(Source(content, name))
-    return recognised(content, name, None if picture is None else picture.size)
+    return recognise(content, name, None if picture is None else picture.size)
 
 
 def _recognise_array(source: Source, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
@@ -125,7 +125,7 @@ def _is_mask(picture: Image.Image, source: Source) -> bool:
 
 def _recognise_text(source: Source) -> tuple[Recognised, ...]:
     try:
-        form = form_of(BOX_FORMS, parsed(source, source.name, (0, 0)))
+        form = form_of(BOX_FORMS, parse_box_text(source, source.name, (0, 0)))
     except InputError as error:
         what = what_it_is(source.data)
         raise InputError(f"{source.name}: {what}" if source.data[:1] not in _TEXT_STARTS else str(error)) from error

@@ -94,10 +94,10 @@ def read_folder(given: Path | bytes | Source, what: str) -> Folder | Source:
             )
         return Folder(given.name, tuple(Source(p.read_bytes(), p.name, p) for p in paths if p.stat().st_size))
     source = read_source(given, what)
-    return _unzipped(source) if source.data.startswith(b"PK\x03\x04") and source.suffix != ".npz" else source
+    return _unzip(source) if source.data.startswith(b"PK\x03\x04") and source.suffix != ".npz" else source
 
 
-def _unzipped(source: Source) -> Folder | Source:
+def _unzip(source: Source) -> Folder | Source:
     try:
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
             members = sorted((m for m in archive.infolist() if not m.is_dir()), key=lambda m: m.filename)

@@ -189,7 +189,7 @@ class LmmClient:
             UnusableReplyError: it can, but no reply passed validation.
             Cancelled: on request.
         """
-        cached = self._retained(prompt, pictures, schema, vote)
+        cached = self._cache_path(prompt, pictures, schema, vote)
         if cached is not None and cached.exists():
             try:
                 return Reply(schema.model_validate_json(read_bytes(cached, MAX_REPLY_BYTES, UnavailableError)), Usage())
@@ -203,7 +203,7 @@ class LmmClient:
         for _ in range(1 + self.settings.re_asks):
             text, used = self._complete(messages, schema, progress, vote)
             usage = usage + used
-            value, problem = _validated(text, schema)
+            value, problem = _validate(text, schema)
             if value is not None:
                 if cached is not None:
                     write_derived(cached, value.model_dump_json().encode())
@@ -220,7 +220,7 @@ class LmmClient:
         unusable.usage = usage
         raise unusable
 
-    def _retained(self, prompt: str, pictures: Sequence[bytes], schema: type[T], vote: int) -> Path | None:
+    def _cache_path(self, prompt: str, pictures: Sequence[bytes], schema: type[T], vote: int) -> Path | None:
         if self.settings.cache is None:
             return None
         digest = hashlib.sha256(
@@ -241,10 +241,10 @@ class LmmClient:
                 return self._with_patience(messages, schema, progress, vote)
             except (openai.BadRequestError, openai.UnprocessableEntityError, openai.NotFoundError) as error:
                 if self._format + 1 >= len(FORMATS) or isinstance(error, openai.NotFoundError):
-                    raise self._explained(error) from error
+                    raise self._explain(error) from error
                 self._format += 1
             except openai.OpenAIError as error:
-                raise self._explained(error) from error
+                raise self._explain(error) from error
 
     def _with_patience(
         self, messages: list[dict[str, Any]], schema: type[T], progress: Progress, vote: int
@@ -289,7 +289,7 @@ class LmmClient:
                 **extra,
             ) as response,
         ):
-            done = self._bounded(response.iter_bytes())
+            done = self._read_completion(response.iter_bytes())
         if done is None:
             return "", Usage(1)
         used = done.usage
@@ -299,7 +299,7 @@ class LmmClient:
         message = done.choices[0].message
         return str(message.content or message.refusal or "")[:MAX_REPLY_CHARS], usage
 
-    def _bounded(self, pieces: Iterable[bytes]) -> ChatCompletion | None:
+    def _read_completion(self, pieces: Iterable[bytes]) -> ChatCompletion | None:
         """The completion, read within the time and the size of any real one; None when it is none.
 
         The timeout of the connection starts anew with every byte, so a reply that drips would never end.
@@ -321,7 +321,7 @@ class LmmClient:
         except ValidationError:
             return None
 
-    def _explained(self, error: Exception) -> UnavailableError:
+    def _explain(self, error: Exception) -> UnavailableError:
         """Why the endpoint cannot be used, and what to do."""
         import openai
 
@@ -345,7 +345,7 @@ class LmmClient:
         return kind(f"{where} answered {status or 'an error'} ({message}); {advice}, {off}")
 
 
-def _validated(text: str, schema: type[T]) -> tuple[T | None, str]:
+def _validate(text: str, schema: type[T]) -> tuple[T | None, str]:
     """The value in a reply, or what is wrong with it, in words the model can act on."""
     document = json_in(text)
     if document is None:

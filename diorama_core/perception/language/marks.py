@@ -22,7 +22,7 @@ _NAME_FONT_PX = 13
 """Names are longer than numbers; read at the size at which the picture is seen."""
 
 
-def marked(
+def draw_marks(
     rgb: UInt8[np.ndarray, "h w 3"], masks: Sequence[Bool[np.ndarray, "h w"]], numbers: Sequence[int | str]
 ) -> UInt8[np.ndarray, "H W 3"]:
     """The photo with tinted outlines and numbers, or names; small photos are enlarged first, large ones reduced."""
@@ -35,7 +35,7 @@ def marked(
         colour = _COLOURS[index % len(_COLOURS)]
         outlines, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         cv2.drawContours(canvas, outlines, -1, colour, line)
-    return _numbered(canvas, scaled, numbers)
+    return _draw_numbers(canvas, scaled, numbers)
 
 
 def _factor(height: int, width: int) -> float:
@@ -43,7 +43,7 @@ def _factor(height: int, width: int) -> float:
     return SMALLEST_SIDE_PX / side if side < SMALLEST_SIDE_PX else min(1.0, LARGEST_SIDE_PX / side)
 
 
-def _numbered(
+def _draw_numbers(
     canvas: UInt8[np.ndarray, "h w 3"], masks: Sequence[np.ndarray], numbers: Sequence[int | str]
 ) -> UInt8[np.ndarray, "h w 3"]:
     picture = Image.fromarray(canvas)

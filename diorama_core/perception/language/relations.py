@@ -29,17 +29,19 @@ def with_graph(geometry: ObjectGeometry, graph: SceneGraph | None) -> ObjectGeom
     if graph is None:
         return geometry
     facing = dict(graph.facing)
-    turned = (_turned(c, facing.get(c.object_id), geometry) for c in geometry.cuboids)
+    turned = (_turn_front(c, facing.get(c.object_id), geometry) for c in geometry.cuboids)
     before, now = ({s.child: s.parent for s in edges} for edges in (geometry.supports, graph.supports))
     tops = {c.object_id: float(c.corners_world[:, 2].max()) for c in geometry.cuboids}
     cuboids = tuple(
-        c if before.get(c.object_id) == now.get(c.object_id) else _stood(c, now.get(c.object_id, ""), tops)
+        c
+        if before.get(c.object_id) == now.get(c.object_id)
+        else _extend_to_supporter(c, now.get(c.object_id, ""), tops)
         for c in turned
     )
     return replace(geometry, supports=graph.supports, cuboids=cuboids)
 
 
-def _stood(cuboid: Cuboid, parent: str, tops_m: Mapping[str, float]) -> Cuboid:
+def _extend_to_supporter(cuboid: Cuboid, parent: str, tops_m: Mapping[str, float]) -> Cuboid:
     """The cuboid reaching down to a new supporter, its top where it was: the floor, or a top that is near."""
     low, high = (float(v) for v in (cuboid.corners_world[:, 2].min(), cuboid.corners_world[:, 2].max()))
     bottom = 0.0 if parent == "floor" else tops_m.get(parent, low)
@@ -52,7 +54,7 @@ def _stood(cuboid: Cuboid, parent: str, tops_m: Mapping[str, float]) -> Cuboid:
     return replace(cuboid, centre=centre, size_m=size)
 
 
-def _turned(cuboid: Cuboid, direction: str | None, geometry: ObjectGeometry) -> Cuboid:
+def _turn_front(cuboid: Cuboid, direction: str | None, geometry: ObjectGeometry) -> Cuboid:
     """The cuboid with its front on the side that looks the named way; untouched where its front is known."""
     if direction is None or direction not in _TURNS or cuboid.front_known:
         return cuboid

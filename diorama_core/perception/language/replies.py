@@ -149,7 +149,7 @@ _MAX_STARTS = 50
 
 def json_in(text: str) -> dict[str, Any] | None:
     """The object that a text is, holds between fences, or holds amid prose; None without any."""
-    for candidate in (text, *_fenced(text)):
+    for candidate in (text, *_split_fences(text)):
         try:
             document = json.loads(candidate)
         except (ValueError, RecursionError):
@@ -159,7 +159,7 @@ def json_in(text: str) -> dict[str, Any] | None:
     return _amid_prose(text)
 
 
-def _fenced(text: str) -> list[str]:
+def _split_fences(text: str) -> list[str]:
     """What stands between pairs of fences. In one pass: replies are as long and as odd as they like."""
     inside = text.split(_FENCE)[1:-1:2]
     return [part[4:] if _LANGUAGE.match(part) else part for part in inside]
@@ -196,7 +196,7 @@ class Ballot:
     captions: tuple[tuple[str, str], ...]
 
 
-def counted(replies: Sequence[GraphReply], objects: Mapping[int, str], architecture: Mapping[int, str]) -> Ballot:
+def count_votes(replies: Sequence[GraphReply], objects: Mapping[int, str], architecture: Mapping[int, str]) -> Ballot:
     """The majority of the replies.
 
     Args:

@@ -15,8 +15,14 @@ from diorama_core.perception.language.client import (
     UnusableReplyError,
     Usage,
 )
-from diorama_core.perception.language.marks import marked, picture_bytes
-from diorama_core.perception.language.replies import RECOGNITION_PROMPT, ClassesReply, GraphReply, counted, graph_prompt
+from diorama_core.perception.language.marks import draw_marks, picture_bytes
+from diorama_core.perception.language.replies import (
+    RECOGNITION_PROMPT,
+    ClassesReply,
+    GraphReply,
+    count_votes,
+    graph_prompt,
+)
 from diorama_core.progress import Progress
 from diorama_core.provenance import GraphMethod, GraphSource, LanguageModelUse
 from diorama_core.scene.types import Support
@@ -40,7 +46,7 @@ class LanguageRecognition:
     def ask(self, photo: Photo, progress: Progress) -> Reply[ClassesReply]:
         """The reply, with what it took; raises as `recognise`."""
         progress.report(0.0, f"Asking {self.settings.model} what is in the photo")
-        picture = picture_bytes(marked(photo.rgb, (), ()))
+        picture = picture_bytes(draw_marks(photo.rgb, (), ()))
         return LmmClient(self.settings).ask(RECOGNITION_PROMPT, [picture], ClassesReply, progress)
 
 
@@ -68,11 +74,11 @@ class LanguageGraph:
             return fallback
         marks = {number: o.id for number, o in enumerate(objects, start=1)}
         room = {len(objects) + 1 + i: name for i, name in enumerate(("floor", "wall", "ceiling"))}
-        picture = picture_bytes(marked(inputs.photo.rgb, [o.mask for o in objects], list(marks)))
+        picture = picture_bytes(draw_marks(inputs.photo.rgb, [o.mask for o in objects], list(marks)))
         prompt = graph_prompt([(n, o.label) for n, o in zip(marks, objects, strict=True)], list(room.items()))
         replies, usage, failed, trouble = self._replies(prompt, picture, progress)
-        ballot = counted(replies, marks, room)
-        supports, scores, mended = repaired(ballot.edges, fallback)
+        ballot = count_votes(replies, marks, room)
+        supports, scores, mended = repair_graph(ballot.edges, fallback)
         return SceneGraph(
             supports=supports,
             scores=scores,
@@ -108,7 +114,7 @@ def _source(settings: LmmSettings, usage: Usage, used: int, failed: int, mended:
     return GraphSource(method, asked, mended)
 
 
-def repaired(
+def repair_graph(
     proposed: Sequence[tuple[Support, float]], fallback: SceneGraph
 ) -> tuple[tuple[Support, ...], tuple[float, ...], int]:
     """The proposed edges where they can be, the fallback's elsewhere.

@@ -51,7 +51,7 @@ class TurnedExtent:
         return yaw_rotation(self.yaw_rad) @ (0.5 * (self.low + self.high))
 
 
-def observed_extent(points: Float[np.ndarray, "n 3"], category: Category) -> TurnedExtent:
+def fit_extent(points: Float[np.ndarray, "n 3"], category: Category) -> TurnedExtent:
     """The box around the points: along the room's axes unless a turned one is clearly tighter."""
     flat = points[:, :2].astype(np.float32)
     angle = float(np.deg2rad(cv2.minAreaRect(flat)[2]))
@@ -68,7 +68,7 @@ def _bounds(points: Float[np.ndarray, "n 3"], yaw_rad: float) -> TurnedExtent:
     return TurnedExtent(yaw_rad, low, high)
 
 
-def completed(
+def complete_extent(
     extent: TurnedExtent,
     category: Category,
     camera_position: Float[np.ndarray, "3"],

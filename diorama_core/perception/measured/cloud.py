@@ -44,7 +44,7 @@ SETTINGS = MeasuredSettings()
 MIN_POINTS = 30
 
 
-def eroded(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+def erode_mask(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     """The eroded mask, without the rim where depth mixes with the background; unchanged when nothing would remain."""
     inner = cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=1).astype(bool)
     return inner if inner.sum() >= MIN_POINTS else mask
@@ -63,7 +63,7 @@ def object_points(
         points_world: Of every pixel.
         depth_m: Of every pixel, 0 where missing.
     """
-    rows, columns = np.nonzero(eroded(detected.mask) & (depth_m > 0))
+    rows, columns = np.nonzero(erode_mask(detected.mask) & (depth_m > 0))
     if len(rows) < MIN_POINTS:
         return np.zeros((0, 3))
     layer = main_layer(depth_m[rows, columns], _centrality(detected, rows, columns), settings)

@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float
 from diorama_core.artefacts import CameraEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.geometry.depth_grid import points_camera, reduce, smooth_normals_camera
 from diorama_core.library.taxonomy import Category, resolve
-from diorama_core.perception.measured.boxes import TurnedExtent, completed, observed_extent, to_cuboid
+from diorama_core.perception.measured.boxes import TurnedExtent, complete_extent, fit_extent, to_cuboid
 from diorama_core.perception.measured.cloud import MIN_POINTS, SETTINGS, MeasuredSettings, object_points
 from diorama_core.perception.measured.supports import resting_heights, supports_of_boxes
 from diorama_core.progress import Progress
@@ -19,7 +19,7 @@ from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera, Support
 
 
-def grounded(
+def extend_to_supporters(
     extents: dict[str, TurnedExtent],
     categories: dict[str, Category],
     edges: tuple[Support, ...],
@@ -76,7 +76,7 @@ class MeasuredGeometry:
         if inputs.depth_m is None:
             raise ValueError("MeasuredGeometry needs measured depth; use SingleViewMetrology for a photo alone")
         progress.report(0.0, "Reading the measured depth")
-        posed, scale = posed_camera(camera, inputs.depth_m, self.settings)
+        posed, scale = place_camera(camera, inputs.depth_m, self.settings)
         depth = inputs.depth_m
         world = points_camera(depth, posed.intrinsics) @ posed.T_world_camera[:3, :3].T + posed.position
         extents: dict[str, TurnedExtent] = {}
@@ -84,11 +84,11 @@ class MeasuredGeometry:
         categories = {o.id: resolve(o.category).category for o in objects}
         for index, detected in enumerate(objects):
             progress.report(0.1 + 0.8 * index / len(objects), f"Measuring the {detected.label}")
-            extents[detected.id], sureness[detected.id] = measured_extent(
+            extents[detected.id], sureness[detected.id] = measure_extent(
                 detected, categories[detected.id], world, depth, posed, self.settings
             )
         edges = supports_of_boxes(objects, extents, categories, depth, self.settings)
-        standing = grounded(extents, categories, edges, self.settings)
+        standing = extend_to_supporters(extents, categories, edges, self.settings)
         cuboids = tuple(
             to_cuboid(key, extent, categories[key], posed.position, sureness[key]) for key, extent in standing.items()
         )
@@ -96,7 +96,7 @@ class MeasuredGeometry:
         return ObjectGeometry(posed, cuboids, edges, scale, camera.confidence)
 
 
-def posed_camera(
+def place_camera(
     camera: CameraEstimate, depth_m: Float[np.ndarray, "h w"], settings: MeasuredSettings
 ) -> tuple[Camera, ScaleSource]:
     """The camera over the world's origin, and where its height comes from."""
@@ -126,7 +126,7 @@ def floor_distance(depth_m: Float[np.ndarray, "h w"], camera: CameraEstimate) ->
     return float(np.median(drops[np.abs(drops - centre) < 0.06]))
 
 
-def measured_extent(
+def measure_extent(
     detected: DetectedObject,
     category: Category,
     points_world: Float[np.ndarray, "h w 3"],
@@ -150,13 +150,13 @@ def measured_extent(
     points = above if len(above) >= MIN_POINTS else points
     if len(points) < MIN_POINTS:
         return _usual_extent(detected, category, depth_m, camera), settings.guess_confidence
-    seen = observed_extent(points, category)
+    seen = fit_extent(points, category)
     width = detected.mask.shape[1]
     cut_off = np.array([detected.box[0] < 2, detected.box[2] > width - 2, detected.box[1] < 2])
     behind = _ring_points(
         detected.mask, points_world, depth_m, float(np.median(camera.to_camera(points)[:, 2])), settings
     )
-    whole = completed(seen, category, camera.position, cut_off, behind, points)
+    whole = complete_extent(seen, category, camera.position, cut_off, behind, points)
     share_seen = float(np.prod(seen.size[:2]) / np.prod(whole.size[:2]))
     confidence = (0.4 + 0.5 * min(1.0, len(points) / settings.full_points)) * (0.6 + 0.4 * share_seen)
     return whole, confidence

@@ -88,17 +88,17 @@ def _pair_costs(
     table = [[np.zeros((1, 1))] * count for _ in range(count)]
     for i in range(count):
         for j in range(i + 1, count):
-            weight = settings.tucked_cost if _tucked(categories[i], categories[j]) else settings.overlap_cost
-            shared = weight * _shared(readings[i], readings[j], settings)
+            weight = settings.tucked_cost if _is_seat_at_table(categories[i], categories[j]) else settings.overlap_cost
+            shared = weight * _footprint_overlap(readings[i], readings[j], settings)
             table[i][j], table[j][i] = shared, shared.T
     return table
 
 
-def _tucked(a: Category, b: Category) -> bool:
+def _is_seat_at_table(a: Category, b: Category) -> bool:
     return (a.name in _SEATS and b.name in _TABLES) or (b.name in _SEATS and a.name in _TABLES)
 
 
-def _shared(a: Cuboids, b: Cuboids, settings: PlacementSettings) -> Float[np.ndarray, "k l"]:
+def _footprint_overlap(a: Cuboids, b: Cuboids, settings: PlacementSettings) -> Float[np.ndarray, "k l"]:
     """Share of the smaller footprint that lies in the other, for all pairs of readings; 0 for flat things."""
     a_in_b, b_in_a = _share_inside(a, b), _share_inside(b, a).T
     solid = (a.size_m[:, 2] > settings.on_footprint_flat_m)[:, None] & (b.size_m[:, 2] > settings.on_footprint_flat_m)[
@@ -111,12 +111,12 @@ def _share_inside(a: Cuboids, b: Cuboids) -> Float[np.ndarray, "k l"]:
     """Share of a's footprint (a grid of points, shrunk by a tenth) inside b's footprint."""
     steps = np.linspace(-0.45, 0.45, 7)
     grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
-    points = _turned(grid[None] * a.size_m[:, None, :2], a.yaw_rad[:, None]) + a.centre[:, None, :2]
+    points = _rotate(grid[None] * a.size_m[:, None, :2], a.yaw_rad[:, None]) + a.centre[:, None, :2]
     offset = points[:, None] - b.centre[None, :, None, :2]
-    local = _turned(offset, -b.yaw_rad[None, :, None])
+    local = _rotate(offset, -b.yaw_rad[None, :, None])
     return (np.abs(local) <= b.size_m[None, :, None, :2] / 2).all(axis=-1).mean(axis=-1)
 
 
-def _turned(points: Float[np.ndarray, "*n 2"], yaw: Float[np.ndarray, "*m"]) -> Float[np.ndarray, "*n 2"]:
+def _rotate(points: Float[np.ndarray, "*n 2"], yaw: Float[np.ndarray, "*m"]) -> Float[np.ndarray, "*n 2"]:
     c, s = np.cos(yaw), np.sin(yaw)
     return np.stack([c * points[..., 0] - s * points[..., 1], s * points[..., 0] + c * points[..., 1]], axis=-1)

@@ -85,13 +85,13 @@ class BoxObservations:
         """The sizes that an object may have, of its category and of what else its word may mean."""
         return size_modes(self.categories[index].name, self.meanings[index], self.settings.placement)
 
-    def seen_depth(self, index: int, camera_height_m: float) -> tuple[float, float]:
+    def log_depth(self, index: int, camera_height_m: float) -> tuple[float, float]:
         """Logarithm of the depth (m) at which an object is seen, for a height of the camera, and its deviation."""
         if self.depths is None:
             return 0.0, UNTOLD
         return float(self.depths.log_depth[index] + np.log(camera_height_m)), float(self.depths.log_sigma[index])
 
-    def hidden(self, index: int, parent: int | None = None) -> Bool[np.ndarray, "4"]:
+    def is_hidden(self, index: int, parent: int | None = None) -> Bool[np.ndarray, "4"]:
         """Edges of an object that others hide."""
         return self.hidden_px(index, parent) > 0
 
@@ -111,7 +111,7 @@ class BoxObservations:
 
     def _beyond_edges(self, index: int, parent: int | None) -> tuple[Float[np.ndarray, "4"], Float[np.ndarray, "4"]]:
         """`hidden_px` and `hidden_odds`, found once: thousands of assumptions about the same objects ask for them."""
-        if (index, parent) not in self._known_beyond:
+        if (index, parent) not in self._beyond_cache:
             others = [j for j in range(len(self)) if j != index and (parent is None or self._may_hide(j, parent))]
             beyond = (self.box_px[others] - self.box_px[index]) * _OUTWARD
             far = np.where(self.covered_by[index][others], beyond, 0.0).max(axis=0, initial=0.0)
@@ -121,11 +121,11 @@ class BoxObservations:
             odds = HIDDEN_ODDS * (raised * self.settings.observed.odds_outlined**outlined) ** unseen
             far.setflags(write=False)
             odds.setflags(write=False)
-            self._known_beyond[index, parent] = far, odds
-        return self._known_beyond[index, parent]
+            self._beyond_cache[index, parent] = far, odds
+        return self._beyond_cache[index, parent]
 
     @cached_property
-    def _known_beyond(self) -> dict[tuple[int, int | None], tuple[np.ndarray, np.ndarray]]:
+    def _beyond_cache(self) -> dict[tuple[int, int | None], tuple[np.ndarray, np.ndarray]]:
         return {}
 
     def _may_hide(self, other: int, parent: int) -> bool:
@@ -149,7 +149,7 @@ def gather(
     border = np.array([0.0, 0.0, width, height])
     truncated = np.abs(boxes - border) <= 0.006 * max(width, height)
     categories = tuple(category(o.category) for o in objects)
-    covered = _covered(boxes, height, settings.observed)
+    covered = _find_covered_edges(boxes, height, settings.observed)
     unseen = truncated | covered.any(axis=1).reshape(-1, 4)
     exact = np.array([o.mask_confidence >= 1 for o in objects], dtype=bool)
     trust = np.array([o.mask_confidence**2 for o in objects]).reshape(-1, 1)
@@ -176,7 +176,7 @@ def gather(
     )
 
 
-def seen_depths(
+def observe_depths(
     seen: SeenDepth,
     objects: Sequence[DetectedObject],
     view: View,
@@ -277,7 +277,7 @@ def _proper(
     return x1, y1, min(max(box[2], x1 + settings.min_box_px), width), min(max(box[3], y1 + settings.min_box_px), height)
 
 
-def _covered(
+def _find_covered_edges(
     boxes: Float[np.ndarray, "n 4"], height: int, settings: BoxObservationSettings
 ) -> Bool[np.ndarray, "n n 4"]:
     """For objects i, j and edges: j's box covers at least half of i's edge and ends clearly lower."""

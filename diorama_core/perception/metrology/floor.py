@@ -11,7 +11,7 @@ from jaxtyping import Float
 from diorama_core.library.taxonomy import PORTABLE, UNKNOWN, Category, having
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode, standing_costs
-from diorama_core.perception.metrology.problem import UNKNOWNS, UNTOLD, Problems, View, stacked
+from diorama_core.perception.metrology.problem import UNKNOWNS, UNTOLD, Problems, View, concatenate_problems
 from diorama_core.perception.metrology.rows import contact_start, other_start, row, size_start
 from diorama_core.perception.metrology.settings import (
     SETTINGS,
@@ -80,7 +80,7 @@ def scan_heights_together(
             total = total + off**2
     for voters, (observations, view, _) in zip(telling if any(telling) else standing, pictures, strict=True):
         if voters:
-            rows = stacked([p for i in voters for p in _scan_rows(observations, i, settings.fit)])
+            rows = concatenate_problems([p for i in voters for p in _scan_rows(observations, i, settings.fit)])
             total = total + _votes(rows, observations, view, settings)
     log_height, log_sigma, cost = _parabola_minimum(
         log_heights, total if further_cost is None else total + further_cost
@@ -124,13 +124,13 @@ def solve_all(rows: list[Problems], view: View, settings: MetrologySettings = SE
 
     The last matters for things cut by the picture's border, which fit from many distances.
     """
-    batch = stacked(rows)
+    batch = concatenate_problems(rows)
     starts = [
         contact_start(batch, view, settings.fit),
         size_start(batch, view, settings=settings.fit),
         other_start(batch, view, settings.heights.farther, settings.fit),
     ]
-    return solve(stacked([batch] * len(starts)), np.concatenate(starts), view, settings=settings.fit)
+    return solve(concatenate_problems([batch] * len(starts)), np.concatenate(starts), view, settings=settings.fit)
 
 
 def _headings(category: Category, settings: HeightScanSettings) -> list[tuple[float, float]]:
@@ -187,7 +187,7 @@ def _costs_at_heights(
     named = np.array([observations.categories[int(i)] is not UNKNOWN for i in rows.item])
     again = rows.rows(named)
     starts = np.concatenate([contact_start(rows, view, settings.fit), other_start(again, view, settings=settings.fit)])
-    first = solve(stacked([rows, again]), starts, view, settings.heights.scan_iterations, settings.fit)
+    first = solve(concatenate_problems([rows, again]), starts, view, settings.heights.scan_iterations, settings.fit)
     rows_of_costs = np.concatenate([np.arange(len(rows)), np.flatnonzero(named)])
     cost, unknowns = np.full(len(rows), np.inf), np.zeros((len(rows), UNKNOWNS))
     for k in np.argsort(-first.cost, kind="stable"):

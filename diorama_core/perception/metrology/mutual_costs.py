@@ -86,7 +86,7 @@ def _key(parent: int, box: Cuboids) -> tuple[int, bytes]:
     return parent, box.centre.tobytes() + box.yaw_rad.tobytes() + box.size_m.tobytes()
 
 
-def seen_through_top(
+def share_seen_through_top(
     box_px: Float[np.ndarray, "4"],
     standing: Cuboids,
     carrier: Cuboids,

@@ -28,12 +28,12 @@ from diorama_core.library.taxonomy import category as find_category
 from diorama_core.perception.metrology.arrangement import arrange, distinct
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.floor import place_on_floor, solve_all
-from diorama_core.perception.metrology.mutual_costs import CarriedCosts, seen_through_top
+from diorama_core.perception.metrology.mutual_costs import CarriedCosts, share_seen_through_top
 from diorama_core.perception.metrology.priors import SizeMode, plain_mode
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View, cuboids
 from diorama_core.perception.metrology.settings import SETTINGS, MetrologySettings, PlacementSettings
 from diorama_core.perception.metrology.silhouette import corner_costs
-from diorama_core.perception.metrology.solver import Solutions, joined
+from diorama_core.perception.metrology.solver import Solutions, concatenate_solutions
 from diorama_core.perception.metrology.supported_objects import (
     FLOOR_OBJECT_COST,
     RoomExtent,
@@ -115,17 +115,17 @@ def place_all(
     others = [i for i in range(len(observations)) if i not in doors and i not in hung]
     best = dict(floor)
     best.update(
-        _supported(
+        _place_on_supporters(
             observations, view, height_m, floor, _room(standing, observations, settings.placement), doors, settings
         )
     )
     telling = standing + [best[i] for i in doors if best[i].cost < settings.placement.sure_cost]
     room = _room(telling, observations, settings.placement)
-    best = _cheaper(best, _supported(observations, view, height_m, floor, room, hung, settings))
+    best = _cheaper(best, _place_on_supporters(observations, view, height_m, floor, room, hung, settings))
     carriers = {**floor, **{i: best[i] for i in hung if i in best}}
-    best = _cheaper(best, _supported(observations, view, height_m, carriers, room, others, settings))
+    best = _cheaper(best, _place_on_supporters(observations, view, height_m, carriers, room, others, settings))
     needed = {p.supporter for p in best.values() if p.supporter >= 0}
-    stacked = _stacked(observations, view, height_m, {**best, **{i: carriers[i] for i in needed}}, settings)
+    stacked = _stack(observations, view, height_m, {**best, **{i: carriers[i] for i in needed}}, settings)
     return tuple(stacked[i] for i in range(len(observations)))
 
 
@@ -149,7 +149,7 @@ def _not_through_tops(
         ]
         box = observations.box_px[index]
         shares = [
-            seen_through_top(box, placement.cuboid, c.cuboid, height_m, view, settings.observed) for c in carriers
+            share_seen_through_top(box, placement.cuboid, c.cuboid, height_m, view, settings.observed) for c in carriers
         ]
         placements[index] = replace(
             placement, cost=placement.cost + settings.placement.through_top_cost * max(shares, default=0.0)
@@ -178,26 +178,26 @@ def _place_on_floor(
         if category.mount != "ceiling" and category.name not in _FIXED_TO_WALLS:
             cost = _floor_cost(observations, index, settings.placement)
             rows += [
-                p.changed(extra=p.extra + cost)
+                p.with_columns(extra=p.extra + cost)
                 for p in place_on_floor(observations, index, height_m, settings=settings)
             ]
     if not rows:
         return {}
     carried = CarriedCosts(observations, view, height_m, settings=settings)
     solved = solve_all(rows, view, settings)
-    placed = _arranged(solved, observations, view, carried, settings)
+    placed = _arrange_standing(solved, observations, view, carried, settings)
     sets = set_sizes(placed, observations, settings.placement)
     if sets:
         shared = [p for i, mode in sets.items() for p in place_on_floor(observations, i, height_m, (mode,), settings)]
         alone = np.isin(solved.problems.item, list(sets))
-        solved = joined(
+        solved = concatenate_solutions(
             solved.dearer(np.where(alone, settings.placement.odd_one_cost, 0.0)), solve_all(shared, view, settings)
         )
-        placed = _arranged(solved, observations, view, carried, settings)
+        placed = _arrange_standing(solved, observations, view, carried, settings)
     return placed
 
 
-def _arranged(
+def _arrange_standing(
     solved: Solutions, observations: BoxObservations, view: View, carried: CarriedCosts, settings: MetrologySettings
 ) -> dict[int, Placement]:
     readings = readings_of(solved, observations, view, settings)
@@ -222,7 +222,7 @@ def set_sizes(
     modes: dict[int, SizeMode] = {}
     for name in sorted({observations.categories[i].name for i in placed} & SETS):
         members = [i for i in placed if observations.categories[i].name == name]
-        whole = np.array([~(observations.hidden(i) | observations.truncated[i]) for i in members])
+        whole = np.array([~(observations.is_hidden(i) | observations.truncated[i]) for i in members])
         if len(members) < 2 or (~whole).sum(axis=1).min() > settings.max_unseen:
             continue
         upright, across = whole[:, 1] & whole[:, 3], whole[:, 0] & whole[:, 2]
@@ -236,7 +236,7 @@ def set_sizes(
     return modes
 
 
-def _supported(
+def _place_on_supporters(
     observations: BoxObservations,
     view: View,
     height_m: float,
@@ -249,7 +249,7 @@ def _supported(
     best: dict[int, Placement] = {}
     groups: dict[int, list[Problems]] = {}
     for index in indices:
-        for supporter, rows in _supported_rows(observations, index, carriers, room, height_m, settings):
+        for supporter, rows in _supporter_rows(observations, index, carriers, room, height_m, settings):
             groups.setdefault(supporter, []).extend(rows)
     if not groups:
         return best
@@ -266,7 +266,7 @@ def _supported(
     return best
 
 
-def _stacked(
+def _stack(
     observations: BoxObservations,
     view: View,
     height_m: float,
@@ -300,7 +300,7 @@ def _small_carrier(observations: BoxObservations, index: int, settings: Placemen
     return below if below is not None and under[below] >= settings.seen_under else None
 
 
-def _supported_rows(
+def _supporter_rows(
     observations: BoxObservations,
     index: int,
     carriers: Mapping[int, Placement],
@@ -311,7 +311,7 @@ def _supported_rows(
     """Rows for everything but the floor that may hold an object, by supporter."""
     category = observations.categories[index]
     options: list[tuple[int, list[Problems]]] = []
-    on_top = _held_cost(observations, index, "on top", settings.placement)
+    on_top = _holding_cost(observations, index, "on top", settings.placement)
     parents = _possible_parents(observations, index, settings.placement)
     if np.isfinite(on_top) and category.name not in _NEVER_ON_OBJECTS:
         for parent in parents:
@@ -324,13 +324,13 @@ def _supported_rows(
     on_wall = (
         settings.placement.screen_on_wall_cost
         if category.name in _SCREENS
-        else _held_cost(observations, index, "wall", settings.placement)
+        else _holding_cost(observations, index, "wall", settings.placement)
     )
     if category.mount == "surface" and (parents or _small_carrier(observations, index, settings.placement) is not None):
         on_wall += settings.placement.beside_its_supporter_cost
     if category.name not in _NEVER_ON_OBJECTS or category.name in _FIXED_TO_WALLS:
         options.append((WALL, place_on_wall(observations, index, height_m, room, on_wall, settings)))
-    below = _held_cost(observations, index, "ceiling", settings.placement)
+    below = _holding_cost(observations, index, "ceiling", settings.placement)
     if np.isfinite(below):
         options.append((CEILING, place_below_ceiling(observations, index, height_m, room, below, settings)))
     return options
@@ -351,7 +351,7 @@ def readings_of(
     names = tuple(c.name for c in observations.categories)
     masks = (observations.mask_reach, observations.corner_weight, observations.mask_exact)
     corners = corner_costs(solved.problems, boxes, view, *masks, names, settings=settings.observed)
-    costs = solved.cost + corners + _averted_costs(solved.problems, boxes, observations, settings.placement)
+    costs = solved.cost + corners + _side_view_costs(solved.problems, boxes, observations, settings.placement)
     readings = {}
     for index in np.unique(solved.problems.item).astype(int):
         mine = np.flatnonzero(solved.problems.item == index)
@@ -364,7 +364,7 @@ def readings_of(
     return readings
 
 
-def _averted_costs(
+def _side_view_costs(
     problems: Problems, boxes: Cuboids, observations: BoxObservations, settings: PlacementSettings
 ) -> Float[np.ndarray, "n"]:
     """A little against things with a front that turn their side to the camera: people picture fronts."""
@@ -376,7 +376,7 @@ def _averted_costs(
 
 def _floor_cost(observations: BoxObservations, index: int, settings: PlacementSettings) -> float:
     category = observations.categories[index]
-    cost = _held_cost(observations, index, "floor", settings)
+    cost = _holding_cost(observations, index, "floor", settings)
     parents = _carriers(observations, index, settings)
     if category.mount == "surface" and parents:
         cost += settings.beside_its_supporter_cost
@@ -401,7 +401,7 @@ def _possible_parents(observations: BoxObservations, index: int, settings: Place
     return supporters_of(observations, index, carriers, settings)
 
 
-def _held_cost(observations: BoxObservations, index: int, where: str, settings: PlacementSettings) -> float:
+def _holding_cost(observations: BoxObservations, index: int, where: str, settings: PlacementSettings) -> float:
     """What speaks against an object being held there; of one without a name the mean over all that it may be."""
     category, meanings, costs = observations.categories[index], observations.meanings[index], _COSTS[where]
     if category is not UNKNOWN:
@@ -428,7 +428,7 @@ def _tells_the_room(placement: Placement, observations: BoxObservations, setting
         return False
     if category.name in PORTABLE and _possible_parents(observations, placement.index, settings):
         return False
-    return not (category is UNKNOWN and bool(observations.hidden(placement.index)[3]))
+    return not (category is UNKNOWN and bool(observations.is_hidden(placement.index)[3]))
 
 
 def _room(telling: list[Placement], observations: BoxObservations, settings: PlacementSettings) -> RoomExtent:

@@ -89,11 +89,11 @@ def _modes_of_meanings(
 ) -> tuple[SizeMode, ...]:
     """The likeliest mode of every other kind that a word may mean and that is held alike, dearer where it is rarer."""
     shares = dict(meanings)
-    weight, kinds_held = max(shares.get(name, 0.0), settings.min_share), _held(name)
+    weight, kinds_held = max(shares.get(name, 0.0), settings.min_share), _holder(name)
     others = [
         (kind, share)
         for kind, share in meanings
-        if kind != name and share >= settings.min_share and _held(kind) == kinds_held
+        if kind != name and share >= settings.min_share and _holder(kind) == kinds_held
     ]
     return tuple(_rarer(kind, share, name, weight) for kind, share in others[: settings.max_meanings])
 
@@ -110,7 +110,7 @@ def _log_breadth(mode: SizeMode) -> float:
     return -float(np.linalg.slogdet(mode.whitening)[1])
 
 
-def _held(name: str) -> str:
+def _holder(name: str) -> str:
     """What holds things of a kind: a wall, the ceiling, or what they stand on."""
     mount = category(name).mount
     return mount if mount in ("wall", "ceiling") else "stands"

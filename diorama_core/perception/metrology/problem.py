@@ -103,13 +103,13 @@ class Problems:
         """The rows without their largest column, where insets are known."""
         return replace(self, outline=self.outline[:, :0])
 
-    def changed(self, **columns: object) -> Problems:
+    def with_columns(self, **columns: object) -> Problems:
         """A copy with some columns replaced (broadcast to the rows)."""
         whole = {k: np.broadcast_to(np.asarray(v), getattr(self, k).shape) for k, v in columns.items()}
         return replace(self, **whole)
 
 
-def stacked(parts: list[Problems]) -> Problems:
+def concatenate_problems(parts: list[Problems]) -> Problems:
     """One batch of several."""
     return Problems(**{f.name: np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Problems)})
 
@@ -190,7 +190,7 @@ def values(
     boxes = cuboids(unknowns, problems, view)
     corners = corners_camera(boxes, problems.camera_height_m, view)
     if inset_px is None:
-        inset_px = _unfilled(boxes, corners, problems, view, settings)
+        inset_px = _outline_inset(boxes, corners, problems, view, settings)
     bounds, visible = visible_bounds(corners, view.intrinsics)
     residuals = np.concatenate(
         [
@@ -223,7 +223,7 @@ def _cut_off(
     return np.log1p(np.maximum(outside, 0.0) / extent) / problems.cut_sigma[:, None]
 
 
-def _unfilled(
+def _outline_inset(
     boxes: Cuboids, corners: Float[np.ndarray, "n 8 3"], problems: Problems, view: View, settings: CuboidFitSettings
 ) -> Float[np.ndarray, "n 4"]:
     """By how many pixels the object's own outline stays within its cuboid's, at each edge of the box.
@@ -274,7 +274,7 @@ def _edge_residuals(
     bounds = bounds + np.where(border, 0.0, unfilled) * inward
     outward = (bounds - problems.box_px) * -inward
     robust = _robust(outward / problems.edge_sigma_px, settings)
-    robust = np.where(outward > 0, _gone_on(robust, outward, problems, settings), robust)
+    robust = np.where(outward > 0, _residuals_beyond(robust, outward, problems, settings), robust)
     return robust + np.where(visible, 0.0, settings.invisible_penalty)[:, None]
 
 
@@ -285,7 +285,7 @@ def _robust(off: Float[np.ndarray, "*n"], settings: CuboidFitSettings) -> Float[
     return np.where(np.abs(off) > beyond, linear, off)
 
 
-def _gone_on(
+def _residuals_beyond(
     seen: Float[np.ndarray, "n 4"],
     outward_px: Float[np.ndarray, "n 4"],
     problems: Problems,

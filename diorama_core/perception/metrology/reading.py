@@ -12,7 +12,7 @@ from diorama_core.artefacts import Decision, DetectedObject, Reason
 from diorama_core.library.taxonomy import UNKNOWN, Category
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement
-from diorama_core.perception.metrology.problem import UNKNOWNS, View, stacked, values
+from diorama_core.perception.metrology.problem import UNKNOWNS, View, concatenate_problems, values
 from diorama_core.perception.metrology.settings import SETTINGS, CuboidFitSettings, HeightScanSettings
 
 
@@ -65,7 +65,7 @@ def confidence_of(
     """
     index = placement.index
     parent = placement.supporter if placement.supporter >= 0 else None
-    unseen = int((observations.hidden(index, parent) | observations.truncated[index]).sum())
+    unseen = int((observations.is_hidden(index, parent) | observations.truncated[index]).sum())
     fit = np.exp(-placement.cost / settings.cost_scale)
     return float(np.clip(fit * settings.hidden_factor**unseen * np.exp(-height_log_sigma), 0.02, 1.0))
 
@@ -100,7 +100,7 @@ def reasons_of(
     """
     if not placements:
         return ()
-    problems = stacked([p.problem for p in placements])
+    problems = concatenate_problems([p.problem for p in placements])
     found = np.stack([_unknowns(p, view) for p in placements])
 
     def nats(unknowns: Float[np.ndarray, "n 6"]) -> Float[np.ndarray, "n r"]:

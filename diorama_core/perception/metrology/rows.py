@@ -34,7 +34,7 @@ def row(
         more: Columns of `Problems` that differ from a thing on the floor, without the row axis.
     """
     # What lies on another is where that is; of small things a network sees what is behind them.
-    log_depth, depth_sigma = observations.seen_depth(index, camera_height_m) if parent is None else (0.0, UNTOLD)
+    log_depth, depth_sigma = observations.log_depth(index, camera_height_m) if parent is None else (0.0, UNTOLD)
     columns: dict[str, object] = {
         "item": float(index),
         "camera_height_m": camera_height_m,

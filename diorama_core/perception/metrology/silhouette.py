@@ -28,7 +28,7 @@ def mask_reach(item: DetectedObject, box: Float[np.ndarray, "4"]) -> Float[np.nd
     if len(rows) < 8:
         return np.full(4, np.nan)
     ends = np.concatenate([np.column_stack([columns, rows]) + shift for shift in ([0, 0], [1, 0], [0, 1], [1, 1])])
-    return _reach(_normalised(ends[None].astype(np.float64), box[None]))[0]
+    return _reach(_normalise(ends[None].astype(np.float64), box[None]))[0]
 
 
 def corner_costs(
@@ -58,7 +58,7 @@ def corner_costs(
     pixels = camera[..., :2] / depth * [k.fx, k.fy] + [k.cx, k.cy]
     usable = (camera[..., 2] > 0.1).all(axis=1)
     item = problems.item.astype(int)
-    excess = _reach(_normalised(pixels, problems.box_px)) - reach[item]
+    excess = _reach(_normalise(pixels, problems.box_px)) - reach[item]
     solid = np.array([name in _SOLID for name in names])[item]
     empty_sigma = np.where(solid, settings.empty_sigma_solid, settings.empty_sigma)[:, None]
     beyond_sigma = np.where(exact[item], settings.beyond_sigma, settings.beyond_sigma_guessed)[:, None]
@@ -67,7 +67,7 @@ def corner_costs(
     return np.where(usable, np.minimum(costs.sum(axis=1), settings.max_outline_cost), weight[item].sum(axis=1))
 
 
-def _normalised(pixels: Float[np.ndarray, "n p 2"], box: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n p 2"]:
+def _normalise(pixels: Float[np.ndarray, "n p 2"], box: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n p 2"]:
     centre, half = (box[:, :2] + box[:, 2:]) / 2, (box[:, 2:] - box[:, :2]) / 2
     return (pixels - centre[:, None]) / half[:, None]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, Values, View, stacked, values
+from diorama_core.perception.metrology.problem import UNKNOWNS, Problems, Values, View, concatenate_problems, values
 from diorama_core.perception.metrology.settings import SETTINGS, CuboidFitSettings
 
 _STEP = 1e-5
@@ -30,13 +30,15 @@ class Solutions:
 
     def dearer(self, by: Float[np.ndarray, "n"]) -> Solutions:
         """These rows with more against each."""
-        return Solutions(self.problems.changed(extra=self.problems.extra + by), self.unknowns, self.cost + by)
+        return Solutions(self.problems.with_columns(extra=self.problems.extra + by), self.unknowns, self.cost + by)
 
 
-def joined(a: Solutions, b: Solutions) -> Solutions:
+def concatenate_solutions(a: Solutions, b: Solutions) -> Solutions:
     """The rows of both."""
     return Solutions(
-        stacked([a.problems, b.problems]), np.concatenate([a.unknowns, b.unknowns]), np.concatenate([a.cost, b.cost])
+        concatenate_problems([a.problems, b.problems]),
+        np.concatenate([a.unknowns, b.unknowns]),
+        np.concatenate([a.cost, b.cost]),
     )
 
 

@@ -17,7 +17,7 @@ from diorama_core.artefacts import (
     Photo,
 )
 from diorama_core.models.seen_depth import GeometryNetwork
-from diorama_core.perception.metrology.box_observations import BoxObservations, gather, seen_depths
+from diorama_core.perception.metrology.box_observations import BoxObservations, gather, observe_depths
 from diorama_core.perception.metrology.floor import HeightScan, scan_heights
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement, place_all
 from diorama_core.perception.metrology.problem import View
@@ -87,7 +87,7 @@ class SingleViewMetrology:
             view = View(hypothesis.intrinsics, hypothesis.R_world_camera)
             if self.depth is not None:
                 seen = self.depth.predict(photo.rgb, hypothesis.intrinsics)
-                observations = replace(observations, depths=seen_depths(seen, objects, view, self.settings.observed))
+                observations = replace(observations, depths=observe_depths(seen, objects, view, self.settings.observed))
             scanned.append((hypothesis, scan_heights(observations, view, self.settings), observations))
         return max(scanned, key=lambda tried: tried[0].score - self.settings.heights.cost_weight * tried[1].cost)
 

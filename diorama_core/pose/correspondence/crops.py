@@ -34,7 +34,7 @@ class GrayView(ArrayValue):
     @cached_property
     def patch_cover(self) -> Float[np.ndarray, "v p"]:
         """Share of each of the 16 x 16 patches that the object covers."""
-        return pooled(self.mask.astype(np.float32)[..., None])[..., 0]
+        return pool_patches(self.mask.astype(np.float32)[..., None])[..., 0]
 
     @cached_property
     def foreground(self) -> Bool[np.ndarray, "v p"]:
@@ -55,7 +55,7 @@ class PatchCrop(ArrayValue):
     """Measured point under the middle of every patch, photo camera; NaN where unknown."""
 
 
-def pooled(image: Float32[np.ndarray, "v h h c"]) -> Float32[np.ndarray, "v p c"]:
+def pool_patches(image: Float32[np.ndarray, "v h h c"]) -> Float32[np.ndarray, "v p c"]:
     """Means over 16 x 16 patches, row by row."""
     v, h, _, c = image.shape
     step = h // PATCHES

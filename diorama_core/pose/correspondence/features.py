@@ -15,7 +15,7 @@ from jaxtyping import Bool, Float32
 from diorama_core.io.derived import read_arrays, write_arrays
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.models.features import PATCH, Dinov2
-from diorama_core.pose.correspondence.crops import PATCHES, GrayView, pooled
+from diorama_core.pose.correspondence.crops import PATCHES, GrayView, pool_patches
 from diorama_core.render.templates import Templates
 
 _VIEWS_AT_ONCE = 12
@@ -52,7 +52,7 @@ class GeometricFeatures:
 
     def encode(self, view: GrayView) -> Float32[np.ndarray, "v p d"]:
         """Unit vectors; zero for patches that the object does not reach."""
-        normals = pooled(view.normals)
+        normals = pool_patches(view.normals)
         cover = view.patch_cover[..., None].astype(np.float32)
         near = _with_neighbours(np.concatenate([normals, cover], axis=-1))
         place = self.place_weight * _place(view)

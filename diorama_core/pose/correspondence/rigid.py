@@ -115,7 +115,7 @@ class Compared:
     similarity: Float[np.ndarray, " v"]
     """How like the whole picture is to each view."""
 
-    def lifted(self, view: int) -> tuple[Float[np.ndarray, "m 3"], Float[np.ndarray, "m 3"]]:
+    def lift_matches(self, view: int) -> tuple[Float[np.ndarray, "m 3"], Float[np.ndarray, "m 3"]]:
         """A view's matches on the shape and in the photo camera's frame, best first; those without depth left out."""
         count = int(self.matches.count[view])
         pixels = patch_pixels(self.templates.grid.size_px)[self.matches.template[view, :count]]
@@ -138,7 +138,7 @@ def from_matches(
 
     With a scale network its pose from the best match competes: the one that more matches agree with is taken.
     """
-    pairs = [compared.lifted(int(v)) for v in views]
+    pairs = [compared.lift_matches(int(v)) for v in views]
     source, target = (np.concatenate(side) for side in zip(*pairs, strict=True))
     best = int(views[0])
     similarity = float(compared.matches.mean_similarity[best])
@@ -186,13 +186,13 @@ def from_one_match(compared: Compared, view: int, scale_network: ScaleNetwork | 
     count = int(matches.count[view])
     query, patches = matches.query[view, :count], matches.template[view, :count]
     coarse = from_view(compared, view, float(matches.mean_similarity[view]))
-    source, target = compared.lifted(view)
+    source, target = compared.lift_matches(view)
     if coarse is None or count < _MIN_MATCHES or len(target) == 0:
         return coarse
     if scale_network is None:
         size2d, angle = _plane_similarity(templates.grid.size_px, patches, query)
     else:
-        size2d, angle = _predicted(compared, view, scale_network)
+        size2d, angle = _predict_scale_and_turn(compared, view, scale_network)
     R = crop.R_camera_crop @ yaw_rotation(angle) @ templates.grid.R_object_camera[view].T
     z_seen = float(target[0] @ crop.R_camera_crop[:, 2])
     z_shown = float(templates.camera(view).to_camera(source[:1])[0, 2])
@@ -211,7 +211,7 @@ def _plane_similarity(
     return float(size2d[0]), float(np.arctan2(turn[0, 1, 0], turn[0, 0, 0]))
 
 
-def _predicted(compared: Compared, view: int, network: ScaleNetwork) -> tuple[float, float]:
+def _predict_scale_and_turn(compared: Compared, view: int, network: ScaleNetwork) -> tuple[float, float]:
     """Size and turn from the best match alone, by the network."""
     pictures = [
         np.repeat(g[..., None], 3, axis=-1) for g in (compared.templates.gray[view], compared.crop.view.gray[0])

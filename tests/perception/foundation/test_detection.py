@@ -20,7 +20,7 @@ from diorama_core.perception.foundation.detection import (
     OpenVocabularyDetection,
     PromptedMasks,
 )
-from diorama_core.perception.masks import LOST_CONFIDENCE, filled_box
+from diorama_core.perception.masks import LOST_CONFIDENCE, box_mask
 from diorama_core.progress import CancelToken, Progress
 
 PHOTO = Photo(np.zeros((100, 200, 3), np.uint8), "room.png", (200, 100))
@@ -126,7 +126,7 @@ def found(segmenter: Drawn, *boxes, progress: Progress | None = None):
 
 def test_masks_are_the_segmenters_cut_to_a_little_more_than_the_box() -> None:
     (item,) = found(Drawn(np.ones(SHAPE, dtype=bool)), BOX)
-    np.testing.assert_array_equal(item.mask, filled_box(SHAPE, (18.0, 8.0, 62.0, 52.0)))
+    np.testing.assert_array_equal(item.mask, box_mask(SHAPE, (18.0, 8.0, 62.0, 52.0)))
     assert item.mask_confidence == 0.9
     assert item.category == "chair"
 
@@ -135,7 +135,7 @@ def test_a_lost_object_is_its_box_at_low_confidence() -> None:
     elsewhere = np.zeros(SHAPE, dtype=bool)
     elsewhere[:5, :5] = True
     (item,) = found(Drawn(elsewhere), BOX)
-    np.testing.assert_array_equal(item.mask, filled_box(SHAPE, BOX))
+    np.testing.assert_array_equal(item.mask, box_mask(SHAPE, BOX))
     assert item.mask_confidence == LOST_CONFIDENCE
     (unsure,) = found(Drawn(np.ones(SHAPE, dtype=bool), 0.0), BOX)
     assert unsure.mask_confidence == LOST_CONFIDENCE

@@ -16,10 +16,10 @@ from diorama_core.models.boxes import Detections
 from diorama_core.perception.foundation.proposals import (
     JoinedDetection,
     OwnDetection,
-    joined_boxes,
-    left_out,
+    count_left_out,
+    join_boxes,
     own_naming,
-    ranked_names,
+    rank_names,
 )
 from diorama_core.progress import Progress
 
@@ -30,16 +30,16 @@ CHAIR = LabelledBox((12.0, 11.0, 60.0, 90.0), "chair", "chair", 0.7)
 
 
 def test_a_networks_word_counts_for_the_same_box_only() -> None:
-    alone, told = ranked_names(NAMED, UNDECIDED, BOXES), ranked_names(NAMED, UNDECIDED, BOXES, [CHAIR])
+    alone, told = rank_names(NAMED, UNDECIDED, BOXES), rank_names(NAMED, UNDECIDED, BOXES, [CHAIR])
     assert told[0][0] == "chair"
     assert told[1] == alone[1], "the other box is another object"
     elsewhere = LabelledBox((300.0, 10.0, 350.0, 90.0), "sofa", "sofa", 0.9)
-    assert ranked_names(NAMED, UNDECIDED, BOXES, [elsewhere]) == alone
+    assert rank_names(NAMED, UNDECIDED, BOXES, [elsewhere]) == alone
 
 
 def test_what_it_looks_like_decides_among_the_kinds_that_a_word_means() -> None:
     seen = np.array([[0.01, 0.04, 0.9, 0.01, 0.04], UNDECIDED[0]])
-    assert ranked_names(NAMED, seen, BOXES, [CHAIR])[0][0] == "office chair"
+    assert rank_names(NAMED, seen, BOXES, [CHAIR])[0][0] == "office chair"
 
 
 @dataclass(frozen=True)
@@ -67,8 +67,8 @@ def test_likely_objects_that_a_build_leaves_out_are_counted() -> None:
     photo = Photo(np.zeros((100, 200, 3), np.uint8), "room.png", (200, 100))
     own = OwnDetection(_Finds())
     assert len(own.detect(photo, (), Progress())) == 1
-    assert left_out(own, photo) == 2
-    assert left_out(JoinedDetection(_Finds(), own), photo) == 1, "the network found one of them"
+    assert count_left_out(own, photo) == 2
+    assert count_left_out(JoinedDetection(_Finds(), own), photo) == 1, "the network found one of them"
 
 
 def test_of_boxes_of_one_object_the_networks_stays() -> None:
@@ -76,8 +76,8 @@ def test_of_boxes_of_one_object_the_networks_stays() -> None:
         LabelledBox((10.0, 10.0, 60.0, 90.0), "sofa", "sofa", 0.9),
         LabelledBox((100.0, 0.0, 150.0, 50.0), "bed", "bed", 0.8),
     )
-    assert joined_boxes((CHAIR,), own) == (own[1], CHAIR)
-    assert joined_boxes((), own) == own
+    assert join_boxes((CHAIR,), own) == (own[1], CHAIR)
+    assert join_boxes((), own) == own
 
 
 @pytest.mark.skipif(not has_own_recogniser(), reason="the recogniser's weights were left out")

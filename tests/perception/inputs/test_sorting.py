@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.sorting import recognised
+from diorama_core.perception.inputs.sorting import recognise
 from tests.perception.inputs.depth.rooms import HEIGHT, WIDTH, room
 from tests.perception.inputs.files import box, boxes_json, depth_png, encoded, npy, picture
 
@@ -43,14 +43,14 @@ PHOTO = (WIDTH * 2, HEIGHT * 2)
     ],
 )
 def test_files_are_sorted(content: bytes, sorts: list[str]) -> None:
-    assert [r.sort for r in recognised(content, "file", PHOTO)] == sorts
+    assert [r.sort for r in recognise(content, "file", PHOTO)] == sorts
 
 
 @pytest.mark.parametrize("content", [b"%PDF-1.4", b"<html></html>", b"hello", b'{"a": 1}'])
 def test_what_is_not_read_is_said(content: bytes) -> None:
     with pytest.raises(InputError):
-        recognised(content, "file", PHOTO)
+        recognise(content, "file", PHOTO)
 
 
 def test_without_a_photo_a_picture_is_one() -> None:
-    assert recognised(encoded(Image.fromarray(IDS)), "file", None)[0].sort == "photo"
+    assert recognise(encoded(Image.fromarray(IDS)), "file", None)[0].sort == "photo"

@@ -21,9 +21,9 @@ from diorama_core.artefacts import (
 )
 from diorama_core.errors import Cancelled, UnavailableError
 from diorama_core.perception.language.client import LmmClient, LmmSettings, UnusableReplyError, strict_schema
-from diorama_core.perception.language.marks import marked
+from diorama_core.perception.language.marks import draw_marks
 from diorama_core.perception.language.replies import ClassesReply, GraphReply, json_in, tidy_label
-from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition, repaired
+from diorama_core.perception.language.stages import LanguageGraph, LanguageRecognition, repair_graph
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.provenance import GraphMethod, LanguageModelUse, ScaleSource
 from diorama_core.scene.types import Camera, Intrinsics, Support
@@ -306,7 +306,7 @@ def test_repair_always_gives_one_acyclic_edge_each(proposed: list[tuple[str, str
         (Support("a", "floor"), Support("b", "a"), Support("c", "b"), Support("d", "wall", "mounted on")),
         (0.9, 0.8, 0.7, 0.6),
     )
-    edges, scores, mended = repaired([(Support(c, p), s) for c, p, s in proposed if c != p], fallback)
+    edges, scores, mended = repair_graph([(Support(c, p), s) for c, p, s in proposed if c != p], fallback)
     assert [e.child for e in edges] == ["a", "b", "c", "d"]
     assert len(scores) == 4
     assert 0 <= mended <= 4
@@ -327,7 +327,7 @@ def test_marks_are_legible_at_any_size(size: tuple[int, int]) -> None:
         mask = np.zeros(size, dtype=bool)
         mask[height // 4 : 3 * height // 4, (3 * k + 1) * width // 10 : (3 * k + 3) * width // 10] = True
         masks.append(mask)
-    picture = marked(rgb, masks, [7, 8, 9])
+    picture = draw_marks(rgb, masks, [7, 8, 9])
     assert 896 <= max(picture.shape[:2]) <= 1568
     factor = picture.shape[1] / width
     for k in range(3):
@@ -414,7 +414,7 @@ def test_names_lie_beside_one_another() -> None:
     mask = np.zeros((300, 900), bool)
     mask[120:180, 400:500] = True
     names = ["armchair_1", "armchair_2", "armchair_3", "armchair_4"]
-    one = marked(rgb, [mask], names[:1])
-    all_there = marked(rgb, [mask] * 4, names)
+    one = draw_marks(rgb, [mask], names[:1])
+    all_there = draw_marks(rgb, [mask] * 4, names)
     filled = [int((np.abs(p.astype(int) - 128).max(axis=-1) > 20).sum()) for p in (one, all_there)]
     assert filled[1] > 2.5 * filled[0], "no label covers another"

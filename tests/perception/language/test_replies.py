@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from diorama_core.perception.language.replies import GraphReply, counted
+from diorama_core.perception.language.replies import GraphReply, count_votes
 from diorama_core.scene.types import Support
 
 OBJECTS = {1: "table", 2: "lamp"}
@@ -17,7 +17,7 @@ def reply(*relations: tuple[int, int, str], objects: tuple[tuple[int, str, str],
 
 
 def count(*replies: GraphReply):
-    return counted(replies, OBJECTS, ARCHITECTURE)
+    return count_votes(replies, OBJECTS, ARCHITECTURE)
 
 
 def test_the_majority_decides_and_says_how_large_it_is() -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from diorama_core.library.taxonomy import category
 from diorama_core.perception.measured.boxes import TurnedExtent
-from diorama_core.perception.measured.stage import grounded
+from diorama_core.perception.measured.stage import extend_to_supporters
 from diorama_core.scene.types import Support
 
 
@@ -35,19 +35,19 @@ EDGES = (
 
 
 def test_boxes_reach_down_to_what_holds_them() -> None:
-    boxes = grounded(EXTENTS, CATEGORIES, EDGES)
+    boxes = extend_to_supporters(EXTENTS, CATEGORIES, EDGES)
     assert boxes["sofa"].low[2] == boxes["chair"].low[2] == 0.0
     assert boxes["lamp"].low[2] == EXTENTS["table"].high[2]
     assert boxes["pillow"].low[2] == pytest.approx(CATEGORIES["sofa"].seat_height_m)
     assert boxes["picture"].low[2] == 1.4
     assert boxes["lamp"].high[2] == EXTENTS["lamp"].high[2]
-    flat = grounded({"table": at(0, -0.3, (1, 1, 0.1))}, CATEGORIES, (Support("table", "floor"),))
+    flat = extend_to_supporters({"table": at(0, -0.3, (1, 1, 0.1))}, CATEGORIES, (Support("table", "floor"),))
     assert flat["table"].high[2] == pytest.approx(0.02)
 
 
 def test_what_people_put_on_furniture_stays_where_it_was_seen_where_nothing_is_marked_below() -> None:
     extents = {"tray": at(0.0, 0.73, (0.36, 0.36, 0.04)), "cup": at(2.0, 0.1, (0.08, 0.08, 0.1))}
     names = {key: category(key) for key in extents}
-    boxes = grounded(extents, names, tuple(Support(key, "floor") for key in extents))
+    boxes = extend_to_supporters(extents, names, tuple(Support(key, "floor") for key in extents))
     assert boxes["tray"].low[2] == pytest.approx(0.73)
     assert boxes["cup"].low[2] == 0.0

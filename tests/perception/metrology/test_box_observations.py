@@ -28,23 +28,23 @@ def masked(box: tuple[int, int, int, int], share: float, confidence: float = 1.0
 
 def test_an_object_in_front_hides_the_edges_inside_its_box() -> None:
     seen = of(("sofa", (100, 100, 300, 250)), ("coffee table", (90, 200, 320, 400)))
-    assert seen.hidden(0).tolist() == [False, False, False, True]
-    assert not seen.hidden(1).any()
+    assert seen.is_hidden(0).tolist() == [False, False, False, True]
+    assert not seen.is_hidden(1).any()
     assert seen.in_front.tolist() == [[False, True], [False, False]]
 
 
 def test_an_object_that_ends_little_lower_or_covers_little_hides_nothing() -> None:
-    assert not of(("sofa", (100, 100, 300, 250)), ("chair", (90, 200, 320, 260))).hidden(0).any()
-    assert not of(("sofa", (100, 100, 300, 250)), ("chair", (90, 200, 220, 400))).hidden(0).any()
+    assert not of(("sofa", (100, 100, 300, 250)), ("chair", (90, 200, 320, 260))).is_hidden(0).any()
+    assert not of(("sofa", (100, 100, 300, 250)), ("chair", (90, 200, 220, 400))).is_hidden(0).any()
 
 
 def test_what_rests_on_a_parent_is_not_hidden_by_it() -> None:
     seen = of(("books", (150, 150, 200, 250)), ("table", (100, 200, 300, 400)), ("lamp", (140, 240, 210, 420)))
-    assert seen.hidden(0).tolist() == [False, False, False, True]
+    assert seen.is_hidden(0).tolist() == [False, False, False, True]
     # The lamp on another surface still hides it; a thing on the floor beyond the table does not.
-    assert seen.hidden(0, parent=1)[BOTTOM]
+    assert seen.is_hidden(0, parent=1)[BOTTOM]
     behind = of(("books", (150, 150, 200, 250)), ("table", (100, 200, 300, 400)), ("chair", (140, 240, 210, 300)))
-    assert not behind.hidden(0, parent=1).any()
+    assert not behind.is_hidden(0, parent=1).any()
 
 
 def test_edges_on_the_border_are_cut_and_tell_no_corner() -> None:

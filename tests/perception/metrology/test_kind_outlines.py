@@ -42,7 +42,7 @@ def test_outlines_stay_within_their_cuboids(distance_m: float, category: str) ->
     inset = inset_px(distance_m, problem(category))
     assert (inset >= 0).all()
     assert inset.max() > 0.5
-    filled = problem(category).changed(outline=WHOLE)
+    filled = problem(category).with_columns(outline=WHOLE)
     assert np.allclose(inset_px(distance_m, filled), 0, atol=1e-6)
 
 

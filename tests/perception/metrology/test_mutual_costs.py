@@ -10,7 +10,7 @@ import pytest
 from diorama_core.geometry.projection import visible_bounds
 from diorama_core.perception.metrology import mutual_costs, placement
 from diorama_core.perception.metrology.box_observations import BoxObservations, gather
-from diorama_core.perception.metrology.mutual_costs import CarriedCosts, seen_through_top
+from diorama_core.perception.metrology.mutual_costs import CarriedCosts, share_seen_through_top
 from diorama_core.perception.metrology.problem import Cuboids, View, corners_camera
 from diorama_core.perception.metrology.settings import SETTINGS
 from tests.perception.metrology.test_metrology import K, RequestedObject, rotation, seen
@@ -93,7 +93,7 @@ def test_a_thing_on_a_table_would_be_seen_through_its_top_from_the_floor() -> No
     far = larger(on_it)
     assert far.base_m[0] == pytest.approx(0.0, abs=1e-9)
     np.testing.assert_allclose(box_of(far), box_of(on_it), atol=1e-6)
-    assert seen_through_top(box_of(on_it), far, TOP, LOW_M, LOW_VIEW) == 1.0
+    assert share_seen_through_top(box_of(on_it), far, TOP, LOW_M, LOW_VIEW) == 1.0
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,7 @@ def test_a_thing_on_a_table_would_be_seen_through_its_top_from_the_floor() -> No
 def test_before_beside_over_and_below_the_top_nothing_is_hidden(centre, height_m) -> None:
     standing = one(centre, (0.3, 0.3, 0.24))
     box = visible_bounds(corners_camera(standing, np.array([height_m]), LOW_VIEW), K)[0][0]
-    assert seen_through_top(box, standing, TOP, height_m, LOW_VIEW) == 0.0
+    assert share_seen_through_top(box, standing, TOP, height_m, LOW_VIEW) == 0.0
 
 
 @pytest.mark.parametrize(("name", "size_m"), [("box", (0.1, 0.14, 0.1)), ("basket", (0.15, 0.15, 0.2))])

@@ -19,9 +19,9 @@ from diorama_core.perception.metrology.problem import (
     WALL,
     Problems,
     View,
+    concatenate_problems,
     corners_camera,
     cuboids,
-    stacked,
     values,
 )
 from diorama_core.perception.metrology.rows import row
@@ -96,8 +96,8 @@ def test_sizes_and_heights_are_measured_in_their_sigmas() -> None:
 def left_edge(shift: float, odds: float = 0.0, hidden_px: float = 0.0) -> float:
     """The residual of a box whose left edge lies `shift` pixels within the true cuboid's."""
     true = problem().box_px[0]
-    moved = problem(box=true).changed(box_px=true + np.array([shift, 0.0, 0.0, 0.0]))
-    rows = moved.changed(hidden_px=[hidden_px] * 4, hidden_odds=[odds] * 4)
+    moved = problem(box=true).with_columns(box_px=true + np.array([shift, 0.0, 0.0, 0.0]))
+    rows = moved.with_columns(hidden_px=[hidden_px] * 4, hidden_odds=[odds] * 4)
     return float(values(unknowns(), rows, VIEW).residuals[0, 0])
 
 
@@ -174,11 +174,11 @@ def test_far_places_are_doubted() -> None:
 
 
 def test_rows_are_stacked_chosen_and_changed() -> None:
-    both = stacked([problem(), problem(yaw=0.5)])
+    both = concatenate_problems([problem(), problem(yaw=0.5)])
     assert len(both) == 2
     assert both.rows(np.array([1])).yaw_rad.tolist() == [0.5]
     assert both.rows(both.yaw_rad > 0).yaw_rad.tolist() == [0.5]
-    changed = both.changed(extra=2.0, box_px=[1.0, 2.0, 3.0, 4.0])
+    changed = both.with_columns(extra=2.0, box_px=[1.0, 2.0, 3.0, 4.0])
     assert changed.extra.tolist() == [2.0, 2.0]
     assert changed.box_px.tolist() == [[1.0, 2.0, 3.0, 4.0]] * 2
     assert both.extra.tolist() == [0.0, 0.0]

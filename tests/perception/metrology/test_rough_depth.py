@@ -11,7 +11,7 @@ from diorama_core.artefacts import CameraEstimate, CameraHypothesis, DetectedObj
 from diorama_core.geometry.casting import camera_rays, cast_box
 from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.perception.metrology import SingleViewMetrology
-from diorama_core.perception.metrology.box_observations import seen_depths
+from diorama_core.perception.metrology.box_observations import observe_depths
 from diorama_core.perception.metrology.problem import UNTOLD, View
 from diorama_core.progress import Progress
 from diorama_core.provenance import CameraSource
@@ -95,8 +95,8 @@ def test_objects_without_an_outline_have_no_depth_and_a_marked_picture_no_scale(
     depth, objects = shot(ROOM, HEIGHT_M)
     view, what = View(K, R), KnownDepth(depth).predict(np.zeros((K.height, K.width, 3), np.uint8), K)
     blank = replace(objects[0], mask=np.zeros_like(objects[0].mask))
-    known = seen_depths(what, (blank, *objects[1:]), view)
+    known = observe_depths(what, (blank, *objects[1:]), view)
     assert known is not None
     assert known.log_sigma[0] == UNTOLD
     assert np.exp(known.log_height) == pytest.approx(HEIGHT_M, rel=0.05)
-    assert seen_depths(what, (replace(blank, mask=np.ones_like(blank.mask)),), view) is None
+    assert observe_depths(what, (replace(blank, mask=np.ones_like(blank.mask)),), view) is None

@@ -41,7 +41,7 @@ def test_contact_starts_where_the_bottom_meets_the_floor() -> None:
 
 
 def test_where_the_bottom_never_meets_the_floor_the_size_tells() -> None:
-    above = problem().changed(box_px=[200.0, 10.0, 300.0, 60.0])
+    above = problem().with_columns(box_px=[200.0, 10.0, 300.0, 60.0])
     np.testing.assert_array_equal(contact_start(above, VIEW), size_start(above, VIEW))
     assert not np.array_equal(contact_start(problem(), VIEW), size_start(problem(), VIEW))
 
@@ -60,8 +60,8 @@ def test_size_starts_where_the_expected_size_fills_the_box() -> None:
 @pytest.mark.parametrize("turn", [-30.0, 0.0, 45.0])
 def test_starts_are_ahead_and_bounded(turn: float) -> None:
     view = View(K, rotation(12.0, turn))
-    tiny = problem().changed(box_px=[300.0, 238.0, 302.0, 240.0])
-    huge = problem().changed(box_px=[0.0, 0.0, 640.0, 480.0])
+    tiny = problem().with_columns(box_px=[300.0, 238.0, 302.0, 240.0])
+    huge = problem().with_columns(box_px=[0.0, 0.0, 640.0, 480.0])
     for rows in (tiny, huge):
         for start in (contact_start(rows, view), size_start(rows, view)):
             assert np.log(0.4) - 1e-9 <= start[0, 1] <= np.log(12.0) + 1e-9
@@ -74,9 +74,11 @@ def test_unknowns_of_the_truth_are_a_fixed_start() -> None:
 
 def test_where_the_lower_end_may_be_hidden_a_start_has_the_usual_height() -> None:
     whole = problem()
-    cut = whole.changed(box_px=whole.box_px - [[0.0, 0.0, 0.0, 0.6 * float(whole.box_px[0, 3] - whole.box_px[0, 1])]])
+    cut = whole.with_columns(
+        box_px=whole.box_px - [[0.0, 0.0, 0.0, 0.6 * float(whole.box_px[0, 3] - whole.box_px[0, 1])]]
+    )
     np.testing.assert_array_equal(other_start(cut, VIEW), size_start(cut, VIEW))
-    hidden = cut.changed(hidden_odds=[0.0, 0.0, 0.0, 2.0])
+    hidden = cut.with_columns(hidden_odds=[0.0, 0.0, 0.0, 2.0])
     reached = [place(start, hidden)[1] for start in (other_start(hidden, VIEW), size_start(hidden, VIEW))]
     assert reached[0] == pytest.approx(CENTRE[1], abs=0.5)
     assert reached[1] > CENTRE[1] + 0.6

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.perception.metrology.problem import corners_camera, cuboids, stacked
+from diorama_core.perception.metrology.problem import concatenate_problems, corners_camera, cuboids
 from diorama_core.perception.metrology.silhouette import DIAGONALS, corner_costs, mask_reach
 from tests.perception.metrology.test_metrology import K, detected
 from tests.perception.metrology.test_problem import VIEW, problem, unknowns
@@ -78,7 +78,7 @@ def test_costs_are_bounded_and_unknown_masks_say_nothing() -> None:
 
 
 def test_cuboids_that_reach_behind_the_camera_pay_for_every_corner() -> None:
-    rows = stacked([problem()])
+    rows = concatenate_problems([problem()])
     boxes = cuboids(unknowns(np.array([0.0, 0.05, 0.4])), rows, VIEW)
     found = corner_costs(
         rows, boxes, VIEW, np.full((1, 4), 1.0), np.array([[1.0, 0.5, 0, 0]]), np.array([True]), ("bed",)

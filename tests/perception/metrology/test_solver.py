@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.perception.metrology import solver
-from diorama_core.perception.metrology.problem import cuboids, stacked, values
+from diorama_core.perception.metrology.problem import concatenate_problems, cuboids, values
 from diorama_core.perception.metrology.solver import solve
 from tests.perception.metrology.test_problem import CENTRE, SIZE, VIEW, problem, unknowns
 
@@ -33,7 +33,7 @@ def test_cost_never_rises_and_counts_the_rows_own_assumptions() -> None:
 def test_rows_do_not_disturb_each_other() -> None:
     one, other = problem(), problem(yaw=0.0)
     starts = np.concatenate([unknowns(CENTRE * [1, 1.4, 1]), unknowns(CENTRE * [1, 0.7, 1])])
-    both = solve(stacked([one, other]), starts, VIEW)
+    both = solve(concatenate_problems([one, other]), starts, VIEW)
     for k, alone in enumerate((one, other)):
         expected = solve(alone, starts[k : k + 1], VIEW)
         np.testing.assert_allclose(both.unknowns[k], expected.unknowns[0], atol=1e-9)
@@ -57,7 +57,7 @@ def test_slopes_are_taken_anew_only_of_rows_that_moved(monkeypatch: pytest.Monke
 
 
 def test_sizes_stay_within_two_sigmas_whatever_the_box_says() -> None:
-    whole = problem().changed(box_px=[5.0, 5.0, 630.0, 470.0], edge_sigma_px=[0.5] * 4)
+    whole = problem().with_columns(box_px=[5.0, 5.0, 630.0, 470.0], edge_sigma_px=[0.5] * 4)
     found = solve(whole, unknowns(), VIEW, 30)
     off = (found.unknowns[0, 2:5] - np.log(SIZE)) / 0.2
     assert np.abs(off).max() <= 2.0 + 1e-9

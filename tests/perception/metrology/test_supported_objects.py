@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from diorama_core.geometry.projection import cuboid_corners
 from diorama_core.library.taxonomy import category
 from diorama_core.perception.metrology.box_observations import BoxObservations, gather
-from diorama_core.perception.metrology.problem import UNTOLD, Cuboids, stacked
+from diorama_core.perception.metrology.problem import UNTOLD, Cuboids, concatenate_problems
 from diorama_core.perception.metrology.settings import SETTINGS
 from diorama_core.perception.metrology.supported_objects import (
     extent_of,
@@ -74,7 +74,7 @@ def test_a_box_that_is_drawn_a_little_high_above_a_carrier_that_shows_little_sti
 
 
 def test_objects_lie_on_tops_within_the_parents_outline() -> None:
-    rows = stacked(place_on(of("table", "books"), 1, 0, PARENT, 1.5, 0.7))
+    rows = concatenate_problems(place_on(of("table", "books"), 1, 0, PARENT, 1.5, 0.7))
     assert set(rows.base_m.round(6)) == {0.8}
     np.testing.assert_allclose(rows.footprint, np.broadcast_to([0.5, 3.0, -np.pi / 2, 1.0, 0.8], rows.footprint.shape))
     assert (rows.extra >= 0.7).all()
@@ -83,21 +83,21 @@ def test_objects_lie_on_tops_within_the_parents_outline() -> None:
 
 
 def test_objects_lie_on_seats_before_backs_and_in_shelves() -> None:
-    sofa = stacked(place_on(of("sofa", "pillow"), 1, 0, PARENT, 1.5, 0.0))
+    sofa = concatenate_problems(place_on(of("sofa", "pillow"), 1, 0, PARENT, 1.5, 0.0))
     seat = category("sofa").seat_height_m
     levels = dict(zip(sofa.base_m.round(6), sofa.extra, strict=True))
     assert set(levels) == {round(seat, 6), round(seat + 0.15, 6), 0.8}
     assert min(levels, key=levels.get) == pytest.approx(seat)
-    odd = stacked(place_on(of("sofa", "vase"), 1, 0, PARENT, 1.5, 0.0))
+    odd = concatenate_problems(place_on(of("sofa", "vase"), 1, 0, PARENT, 1.5, 0.0))
     assert odd.extra.min() == pytest.approx(sofa.extra.min() + 6.0)
     on_back = odd.extra[np.argmax(odd.base_m)]
     assert on_back > odd.extra.min() + 5.0, "a vase stands on a backrest still more seldom"
-    shelf = stacked(place_on(of("bookshelf", "books"), 1, 0, PARENT, 1.5, 0.0))
+    shelf = concatenate_problems(place_on(of("bookshelf", "books"), 1, 0, PARENT, 1.5, 0.0))
     assert len(set(shelf.base_m.round(6))) == 4
 
 
 def test_pillows_lie_at_the_head_of_the_bed_away_from_the_camera() -> None:
-    rows = stacked(place_on(of("bed", "pillow"), 1, 0, PARENT, 1.5, 0.0))
+    rows = concatenate_problems(place_on(of("bed", "pillow"), 1, 0, PARENT, 1.5, 0.0))
     assert rows.footprint[0, 1] > 3.0 + 0.5
     assert rows.footprint[0, 3] == pytest.approx(0.45)
     # The head's far edge is the bed's own.
@@ -106,7 +106,7 @@ def test_pillows_lie_at_the_head_of_the_bed_away_from_the_camera() -> None:
 
 def test_walls_ahead_left_and_right_are_tried() -> None:
     room = extent_of(np.zeros((0, 8, 3)), ())
-    rows = stacked(place_on_wall(of("picture"), 0, 1.5, room, 2.0))
+    rows = concatenate_problems(place_on_wall(of("picture"), 0, 1.5, room, 2.0))
     modes = len(rows) // 3
     assert sorted(zip(rows.yaw_rad[:3].round(3), rows.wall_m[:3], strict=True)) == [
         (-1.571, 3.5),
@@ -117,7 +117,7 @@ def test_walls_ahead_left_and_right_are_tried() -> None:
     middles = rows.base_m + np.exp(rows.log_size[:, 2]) / 2
     np.testing.assert_allclose(middles, 1.5, atol=1e-9)
     assert modes >= 1
-    door = stacked(place_on_wall(of("door"), 0, 1.5, room, 0.0))
+    door = concatenate_problems(place_on_wall(of("door"), 0, 1.5, room, 0.0))
     assert not door.base_m.any()
     assert not door.base_sigma_m.any()
     assert (door.wall_sigma >= UNTOLD).all(), "its foot tells where its wall is"
@@ -126,6 +126,6 @@ def test_walls_ahead_left_and_right_are_tried() -> None:
 
 def test_lamps_hang_from_the_usual_ceiling() -> None:
     room = extent_of(np.zeros((0, 8, 3)), ())
-    rows = stacked(place_below_ceiling(of("ceiling lamp"), 0, 1.5, room, 0.0))
+    rows = concatenate_problems(place_below_ceiling(of("ceiling lamp"), 0, 1.5, room, 0.0))
     np.testing.assert_allclose(rows.base_m + np.exp(rows.log_size[:, 2]), SETTINGS.placement.ceiling_m)
     assert (rows.top_m == SETTINGS.placement.ceiling_m).all()

@@ -33,7 +33,7 @@ class EdgeMap:
         self._scale = np.array([size[0] / rgb.shape[1], size[1] / rgb.shape[0]])
         self._slack = max(1, round(SLACK_SHARE * max(size)))
         # The fourth root tempers strong edges: that a side lies on one counts more than how strong it is.
-        self._across, self._along = (np.cumsum(_padded(np.sqrt(np.sqrt(m))), axis=0) for m in (across, along.T))
+        self._across, self._along = (np.cumsum(_pad_first_row(np.sqrt(np.sqrt(m))), axis=0) for m in (across, along.T))
 
     def agreement(self, boxes: Sequence[Corners]) -> float:
         """The mean strength of edges under the sides of boxes, over that of such lines anywhere; 1 says nothing."""
@@ -61,7 +61,7 @@ class EdgeMap:
         return float(windows[column] / windows.mean())
 
 
-def _padded(edges: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h2 w"]:
+def _pad_first_row(edges: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h2 w"]:
     """The map with an empty first row, so that sums of rows are differences."""
     return np.concatenate([np.zeros((1, edges.shape[1])), edges])
 
@@ -92,7 +92,7 @@ def is_upside_down(boxes: Sequence[LabelledBox], height: int) -> bool:
     return ratio > CERTAIN
 
 
-def turned_box(marked: LabelledBox, photo: Photo) -> LabelledBox:
+def rotate_box_180(marked: LabelledBox, photo: Photo) -> LabelledBox:
     """A box of a photo after that was turned by 180 degrees."""
     x1, y1, x2, y2 = marked.box
     return replace(marked, box=(photo.width - x2, photo.height - y2, photo.width - x1, photo.height - y1))

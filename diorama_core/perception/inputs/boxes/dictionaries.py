@@ -122,7 +122,7 @@ def has_class_number(entry: Mapping[str, Any]) -> bool:
     return any(isinstance(keys.get(k), int | float) for k in ("categoryid", "classid", "class", "label", "labelid"))
 
 
-def unused_words(entries: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+def find_unused_words(entries: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
     """Keys under which every entry holds a word that is not read as its class."""
     common: dict[str, None] | None = None
     for entry in entries:

@@ -87,14 +87,14 @@ def read_table(text: BoxText) -> BoxFile:
 def is_words(text: BoxText) -> bool:
     """Lines of a word and four numbers, or KITTI's fifteen columns."""
     rows = _rows(text)
-    return bool(rows) and all(_worded(r) is not None for r in rows)
+    return bool(rows) and all(_split_words(r) is not None for r in rows)
 
 
 def read_words(text: BoxText) -> BoxFile:
     """A word, perhaps a score, and four numbers a line."""
     by_name: dict[str, list[BoxEntry]] = {}
     for index, row in enumerate(_rows(text)):
-        pair, where = _worded(row), f"{text.source.name}: line {index + 1}"
+        pair, where = _split_words(row), f"{text.source.name}: line {index + 1}"
         if pair is None:
             continue
         words, values = pair
@@ -123,7 +123,7 @@ def _is_yolo_row(row: list[str]) -> bool:
     return whole and (len(shares) in (4, 5) or len(shares) % 2 == 0) and all(-0.1 <= (v or 0.0) <= 1.1 for v in shares)
 
 
-def _worded(row: list[str]) -> tuple[list[str], list[str]] | None:
+def _split_words(row: list[str]) -> tuple[list[str], list[str]] | None:
     """The words and the four numbers of a line, or the eight of four corners."""
     if (
         len(row) in (_KITTI_WORDS, _KITTI_WORDS + 1)

@@ -12,11 +12,11 @@ from diorama_core.library.labels import names_a_kind
 from diorama_core.perception.inputs.boxes.dictionaries import (
     FIGURES,
     box_numbers,
+    find_unused_words,
     has_class_number,
     keys_of,
     numbers,
     score_of,
-    unused_words,
     word_of,
 )
 from diorama_core.perception.inputs.boxes.entry import (
@@ -201,15 +201,15 @@ def read_wrapped(text: BoxText) -> BoxFile:
 
 def is_keyed(text: BoxText) -> bool:
     """A JSON object with a box, or a list of boxes, under each name; or with a column under each number of a box."""
-    return bool(_keyed(text.document))
+    return bool(_rows_by_key(text.document))
 
 
 def read_keyed(text: BoxText) -> BoxFile:
     """Boxes by name or by number."""
-    return read_entries(_keyed(text.document), text.source.name)
+    return read_entries(_rows_by_key(text.document), text.source.name)
 
 
-def _keyed(document: object) -> list[dict[str, Any]]:
+def _rows_by_key(document: object) -> list[dict[str, Any]]:
     if not isinstance(document, dict) or not document or has_box(document):
         return []
     columns = [list(v.values()) if isinstance(v, dict) else v for v in document.values()]
@@ -234,7 +234,7 @@ def _words(rows: Sequence[Mapping[str, Any]], entries: Sequence[BoxEntry]) -> tu
     words = [e.word for e in entries]
     if any(w != UNNAMED for w in words) or not rows or any("class" in r for r in rows):
         return words, ()
-    unused = unused_words(rows)
+    unused = find_unused_words(rows)
     known = [k for k in unused if all(names_a_kind(str(r[k])) and str(r[k]).lower() not in FIGURES for r in rows)]
     if len(known) == 1:
         return [str(r[known[0]]) for r in rows], (f"the names of the boxes were read from '{shorten(known[0], 40)}'",)

@@ -46,12 +46,12 @@ def class_names_in(value: object, level: int = 0) -> dict[int, str]:
     if not isinstance(value, dict) or level > 3:
         return {}
     for key, inner in keys_of(value).items():
-        if key in _CLASS_NAMES and (names := _numbered(inner)):
+        if key in _CLASS_NAMES and (names := _names_by_number(inner)):
             return names
     return next((names for inner in value.values() if (names := class_names_in(inner, level + 1))), {})
 
 
-def _numbered(value: object) -> dict[int, str]:
+def _names_by_number(value: object) -> dict[int, str]:
     if isinstance(value, dict) and value and all(str(k).isdigit() and isinstance(v, str) for k, v in value.items()):
         return {int(k): str(v) for k, v in value.items()}
     if not isinstance(value, list) or not value:

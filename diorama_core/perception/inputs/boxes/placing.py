@@ -51,7 +51,7 @@ class _Reading:
     note: str = ""
 
 
-def placed_boxes(name: str, file: BoxFile, photo: DecodedPhoto) -> tuple[list[Corners], tuple[str, ...]]:
+def place_boxes(name: str, file: BoxFile, photo: DecodedPhoto) -> tuple[list[Corners], tuple[str, ...]]:
     """The boxes in pixels of the upright original without its border, and what was done to them.
 
     Args:
@@ -71,11 +71,15 @@ def placed_boxes(name: str, file: BoxFile, photo: DecodedPhoto) -> tuple[list[Co
         side = _UNIT_SIDES[unit]
         stored = file.size is not None and file.size == frame.stored_size != frame.full_size
         width, height = frame.stored_size if stored else frame.full_size
-        corners = _scaled(corners, width / side, height / side)
+        corners = _scale(corners, width / side, height / side)
         others = _other_layouts(corners) if file.ambiguous_layout else ()
-        readings = [_turned(corners, photo)] if stored else [_Reading(corners), *others, *_stored(corners, photo)]
+        readings = (
+            [_turn_upright(corners, photo)]
+            if stored
+            else [_Reading(corners), *others, *_readings_of_stored_pixels(corners, photo)]
+        )
     elif file.size is not None:
-        readings = [_stated(name, corners, file.size, photo)]
+        readings = [_reading_of_stated_size(name, corners, file.size, photo)]
     else:
         readings = [_Reading(corners), *_others(corners, photo, file.ambiguous_layout)]
     chosen = _best(readings, photo)
@@ -100,7 +104,7 @@ def _unit_of(file: BoxFile, corners: list[Corners], photo: DecodedPhoto) -> tupl
     return "pixels", ()
 
 
-def _stated(name: str, corners: list[Corners], size: Size, photo: DecodedPhoto) -> _Reading:
+def _reading_of_stated_size(name: str, corners: list[Corners], size: Size, photo: DecodedPhoto) -> _Reading:
     """The boxes of a picture of the stated size."""
     frame = photo.frame
     if size == frame.full_size or _is_rounded(size, frame.full_size):
@@ -111,9 +115,9 @@ def _stated(name: str, corners: list[Corners], size: Size, photo: DecodedPhoto) 
     for target, turns in ((frame.full_size, False), (frame.stored_size, True)):
         if abs((size[0] / size[1]) / (target[0] / target[1]) - 1.0) > ASPECT_TOLERANCE:
             continue
-        scaled = _scaled(corners, target[0] / size[0], target[1] / size[1])
+        scaled = _scale(corners, target[0] / size[0], target[1] / size[1])
         note = f"the boxes are of a copy of {size[0]} x {size[1]} pixels; they were scaled to the photo"
-        turned = _turned(scaled, photo)
+        turned = _turn_upright(scaled, photo)
         return turned if turns and size == target else _Reading(turned.corners if turns else scaled, note)
     width, height = frame.full_size
     raise InputError(
@@ -131,7 +135,7 @@ def _others(corners: list[Corners], photo: DecodedPhoto, ambiguous: bool) -> Ite
     width, height = photo.frame.full_size
     if ambiguous:
         yield from _other_layouts(corners)
-    yield from _stored(corners, photo)
+    yield from _readings_of_stored_pixels(corners, photo)
     largest = 1.0 if _fits(corners, photo) else np.inf  # boxes of a larger copy reach beyond the photo
     for scale in sorted({*FRACTIONS, *(side / max(width, height) for side in LONG_SIDES)}):
         # A copy's pixels are whole: sizes that the same scale does not give are no copy of this photo.
@@ -142,7 +146,7 @@ def _others(corners: list[Corners], photo: DecodedPhoto, ambiguous: bool) -> Ite
                 f"all boxes lie in {extent} of the picture, and agree with it as those of a copy of "
                 f"{size[0]} x {size[1]} pixels; they were scaled"
             )
-            yield _Reading(_scaled(corners, 1 / scale, 1 / scale), note)
+            yield _Reading(_scale(corners, 1 / scale, 1 / scale), note)
 
 
 def _other_layouts(corners: list[Corners]) -> Iterator[_Reading]:
@@ -152,12 +156,12 @@ def _other_layouts(corners: list[Corners]) -> Iterator[_Reading]:
         yield _Reading([from_layout(c, layout) for c in corners], note)
 
 
-def _stored(corners: list[Corners], photo: DecodedPhoto) -> Iterator[_Reading]:
+def _readings_of_stored_pixels(corners: list[Corners], photo: DecodedPhoto) -> Iterator[_Reading]:
     if photo.frame.orientation > 1:
-        yield _turned(corners, photo)
+        yield _turn_upright(corners, photo)
 
 
-def _turned(corners: list[Corners], photo: DecodedPhoto) -> _Reading:
+def _turn_upright(corners: list[Corners], photo: DecodedPhoto) -> _Reading:
     frame = photo.frame
     width, height = frame.stored_size
     note = (
@@ -204,10 +208,10 @@ def _to_photo_pixels(corners: Sequence[Corners], photo: DecodedPhoto) -> list[Co
     left, top = photo.frame.margins[:2]
     scale = photo.photo.width / photo.frame.inner_size[0]
     moved = [(x1 - left, y1 - top, x2 - left, y2 - top) for x1, y1, x2, y2 in corners]
-    return _scaled(moved, scale, scale)
+    return _scale(moved, scale, scale)
 
 
-def _scaled(corners: Sequence[Corners], across: float, down: float) -> list[Corners]:
+def _scale(corners: Sequence[Corners], across: float, down: float) -> list[Corners]:
     return [(x1 * across, y1 * down, x2 * across, y2 * down) for x1, y1, x2, y2 in corners]
 
 

@@ -11,8 +11,8 @@ from diorama_core.io.bounded import megabytes, shorten
 from diorama_core.library.labels import understand_label
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
 from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile
-from diorama_core.perception.inputs.boxes.placing import placed_boxes
-from diorama_core.perception.inputs.boxes.table import BOX_FORMS, EXAMPLE, parsed
+from diorama_core.perception.inputs.boxes.placing import place_boxes
+from diorama_core.perception.inputs.boxes.table import BOX_FORMS, EXAMPLE, parse_box_text
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
 from diorama_core.perception.inputs.source import Source, form_of
 
@@ -34,7 +34,7 @@ def read_boxes(source: Source, photo: DecodedPhoto) -> tuple[tuple[LabelledBox, 
         raise InputError(
             f"{source.name}: {len(file.entries)} boxes are more than the {MAX_OBJECTS} accepted; keep the furniture"
         )
-    corners, placing = placed_boxes(source.name, file, photo)
+    corners, placing = place_boxes(source.name, file, photo)
     size = photo.photo.original_size
     scale = (photo.photo.width / size[0], photo.photo.height / size[1])
     boxes: list[LabelledBox] = []
@@ -44,17 +44,17 @@ def read_boxes(source: Source, photo: DecodedPhoto) -> tuple[tuple[LabelledBox, 
         if word.lower() in ARCHITECTURE_WORDS:
             notes.append(f"box {index} ('{word}') is part of the room itself and was left out")
             continue
-        box, clipped = _checked_box(source.name, index, given, photo)
+        box, clipped = _clip_box(source.name, index, given, photo)
         if clipped:
             notes.append(f"box {index} ('{word}') reached outside the picture and was clipped")
-        category, label, note = understood(word)
+        category, label, note = understand_word(word)
         notes += [note] if note else []
         scaled = (box[0] * scale[0], box[1] * scale[1], box[2] * scale[0], box[3] * scale[1])
         boxes.append(LabelledBox(scaled, category, label, entry.score))
     return tuple(boxes), tuple(dict.fromkeys(notes))
 
 
-def understood(word: str) -> tuple[str, str, str]:
+def understand_word(word: str) -> tuple[str, str, str]:
     """Category, label and a note for the user, of a word that was given as a class."""
     resolution = understand_label(word)
     label = UNKNOWN.name if resolution.exact and resolution.category is UNKNOWN else word
@@ -68,7 +68,7 @@ def _file(source: Source, photo: DecodedPhoto) -> BoxFile:
         raise InputError(
             f"{source.name}: {megabytes(len(source.data))} are more than {MAX_OBJECTS} boxes take; boxes are {EXAMPLE}"
         )
-    text = parsed(source, photo.photo.name, photo.frame.full_size)
+    text = parse_box_text(source, photo.photo.name, photo.frame.full_size)
     if isinstance(text.document, list) and not text.document:
         return BoxFile(())
     form = form_of(BOX_FORMS, text)
@@ -100,9 +100,7 @@ def _tidy(word: str) -> str:
     return re.sub(r"[\s_\x00-\x1f\x7f]+", " ", word).strip() or UNKNOWN.name
 
 
-def _checked_box(
-    name: str, index: int, bbox: tuple[float, float, float, float], photo: DecodedPhoto
-) -> tuple[Box, bool]:
+def _clip_box(name: str, index: int, bbox: tuple[float, float, float, float], photo: DecodedPhoto) -> tuple[Box, bool]:
     x1, y1, x2, y2 = bbox
     shown = "[" + ", ".join(f"{v:g}" for v in bbox) + "]"
     if x2 - x1 < MIN_BOX_PX or y2 - y1 < MIN_BOX_PX:
@@ -120,4 +118,4 @@ def _checked_box(
     return box, max(abs(a - b) for a, b in zip(box, bbox, strict=True)) > CLIP_NOTICE_PX
 
 
-__all__ = ["MAX_OBJECTS", "BoxEntry", "read_boxes", "understood"]
+__all__ = ["MAX_OBJECTS", "BoxEntry", "read_boxes", "understand_word"]

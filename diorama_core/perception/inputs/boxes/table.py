@@ -113,7 +113,7 @@ BOX_FORMS: tuple[Form[BoxText, BoxFile], ...] = (
 )
 
 
-def parsed(source: Source, photo_name: str, photo_size: Size) -> BoxText:
+def parse_box_text(source: Source, photo_name: str, photo_size: Size) -> BoxText:
     """The file as JSON, XML or text.
 
     Raises:

@@ -25,7 +25,7 @@ def one_channel(array: Shaped[np.ndarray, "..."], name: str) -> tuple[Shaped[np.
     Raises:
         InputError: it has another shape, or channels of which none is depth.
     """
-    squeezed = _squeezed(array)
+    squeezed = _squeeze(array)
     if squeezed.ndim == 2 and 0 not in squeezed.shape and min(squeezed.shape) > 1:
         return squeezed, ()
     if squeezed.ndim == 3 and squeezed.shape[0] in (3, 4) and squeezed.shape[2] > 4:
@@ -42,7 +42,7 @@ def one_channel(array: Shaped[np.ndarray, "..."], name: str) -> tuple[Shaped[np.
     )
 
 
-def _squeezed(array: np.ndarray) -> np.ndarray:
+def _squeeze(array: np.ndarray) -> np.ndarray:
     axes = tuple(k for k, n in enumerate(array.shape) if n == 1)
     return np.squeeze(array, axis=axes) if array.ndim > 2 else array
 
@@ -88,10 +88,10 @@ def depth_of_colours(colours: Shaped[np.ndarray, "h w 3"]) -> tuple[Shaped[np.nd
     """The numbers of red, green and blue as one, and a note where they were packed; None where they are colours."""
     if (colours == colours[..., :1]).all():
         return colours[..., 0], ()
-    return _unpacked(colours) if colours.dtype == np.uint8 else None
+    return _unpack_colours(colours) if colours.dtype == np.uint8 else None
 
 
-def _unpacked(colours: UInt8[np.ndarray, "h w 3"]) -> tuple[Integer[np.ndarray, "h w"], tuple[str, ...]] | None:
+def _unpack_colours(colours: UInt8[np.ndarray, "h w 3"]) -> tuple[Integer[np.ndarray, "h w"], tuple[str, ...]] | None:
     """Two or three channels as the bytes of one number."""
     for high, low in permutations(range(3), 2):
         if not _counts(colours[..., high], colours[..., low]):

@@ -54,14 +54,14 @@ def _confidence_files(source: Source) -> tuple[Source, ...]:
     stem, name = glob.escape(Path(source.name).stem), glob.escape(Path(source.name).name)
     named = [f"{stem}{joint}conf*.*" for joint in "_.-"]
     if "depth" in stem.lower():
-        named += [f"{part}.*" for word in ("confidence", "conf") if (part := _replaced(stem, word)) != stem]
+        named += [f"{part}.*" for word in ("confidence", "conf") if (part := _replace_word(stem, word)) != stem]
     files = source.sibling_files(*named)
     if not files and source.path is not None and source.path.parent.name.lower().startswith("depth"):
         files = Source(b"", "", source.path.parent).sibling_files(f"confidence/{name}", f"confidence_map/{name}")
     return files
 
 
-def _replaced(stem: str, word: str) -> str:
+def _replace_word(stem: str, word: str) -> str:
     """A name with another word for depth, as in depth_0001 and confidence_0001."""
     at = stem.lower().index("depth")
     return stem[:at] + word + stem[at + len("depth") :]

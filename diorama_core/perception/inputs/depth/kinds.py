@@ -24,7 +24,7 @@ from diorama_core.perception.inputs.depth.planes import (
     PlaneFit,
     SampledDepth,
     planes_of,
-    sampled,
+    sample_depth,
 )
 
 Kind = Literal["depth", "distance", "inverse", "root", "logarithm", "shifted"]
@@ -86,7 +86,7 @@ def depth_readings(
         focal: over the longer side, where it is known.
         asked: what they are said to be; a reading of that kind is among the answer.
     """
-    sample, order = sampled(values, valid), depth_order(values, valid, boxes)
+    sample, order = sample_depth(values, valid), depth_order(values, valid, boxes)
     scale = max(float(np.median(sample.values)), 1e-12)
     sample = SampledDepth(sample.x, sample.y, sample.values / scale)
     readings = [
@@ -97,7 +97,7 @@ def depth_readings(
     rays = () if exact and asked != "distance" else _ray_focals(sample, always=asked == "distance")
     for trial in rays if focal is None else (focal,):
         readings.append(_reading("distance", DEPTH, planes_of(to_axial_depth(sample, trial)), order, trial))
-    for kind, function in () if exact and asked not in BENT else _bent(sample, asked):
+    for kind, function in () if exact and asked not in BENT else _find_bent_functions(sample, asked):
         readings.append(_reading(kind, function, planes_of(sample, function), order))
     restored = [_to_map_unit(r, scale) for r in readings]
     return tuple(sorted(restored, key=lambda r: -r.score))
@@ -138,7 +138,7 @@ def rays_of(height: int, width: int, focal: float) -> Float[np.ndarray, "h w"]:
 
 def _ray_focals(sample: SampledDepth, *, always: bool) -> tuple[float, ...]:
     """The focal length under which distances form planes best; none where depth forms clearly more."""
-    few = sample.thinned(SEARCH_POINTS)
+    few = sample.subsample(SEARCH_POINTS)
     scores = {f: _share(to_axial_depth(few, f), trials=SEARCH_TRIALS) for f in RAY_FOCALS}
     best, as_depth = max(scores, key=lambda f: scores[f]), _share(few, trials=SEARCH_TRIALS)
     if scores[best] < as_depth - NEARLY and not always:
@@ -152,9 +152,9 @@ def _ray_focals(sample: SampledDepth, *, always: bool) -> tuple[float, ...]:
     return (best,)
 
 
-def _bent(sample: SampledDepth, asked: DepthKind) -> tuple[tuple[Kind, DepthFunction], ...]:
+def _find_bent_functions(sample: SampledDepth, asked: DepthKind) -> tuple[tuple[Kind, DepthFunction], ...]:
     """The root, logarithm and offset of depth, where the numbers form about as many planes so as they do as depth."""
-    few = sample.thinned(SEARCH_POINTS)
+    few = sample.subsample(SEARCH_POINTS)
     enough = _share(few, trials=SEARCH_TRIALS) - NEARLY
 
     def planar(function: DepthFunction) -> float:
@@ -187,7 +187,7 @@ def _reading(
 
 def _to_map_unit(reading: DepthReading, scale: float) -> DepthReading:
     """The reading in the map's own unit."""
-    function, one = reading.function.scaled(scale), np.ones(1)
+    function, one = reading.function.scale(scale), np.ones(1)
     factor = float(function.inverse_depth(scale * one)[0] / reading.function.inverse_depth(one)[0])
     fit = PlaneFit(reading.fit.explained, reading.fit.planes * factor, reading.fit.shares)
     return replace(reading, fit=fit, function=function)

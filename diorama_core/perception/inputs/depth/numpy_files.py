@@ -84,7 +84,7 @@ def read_npz(content: DepthContent) -> RawDepth:
     key = known or next(iter(maps))
     values, notes = one_channel(maps[key], name)
     kind = "inverse" if key in _RELATIVE_NAMES else None
-    values, more = _trusted(values, read, key)
+    values, more = _apply_masks(values, read, key)
     return RawDepth(values, values.dtype.kind == "f", (*notes, *more), kind)
 
 
@@ -108,7 +108,7 @@ def _array(data: bytes, name: str) -> np.ndarray:
         raise InputError(f"{name}: the .npy depth is truncated or damaged; write it again with numpy.save") from error
 
 
-def _trusted(
+def _apply_masks(
     values: Shaped[np.ndarray, "h w"], arrays: dict[str, np.ndarray], key: str
 ) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
     """The map without the pixels that a mask of the same file excludes."""

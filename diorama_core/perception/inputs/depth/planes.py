@@ -40,7 +40,7 @@ class DepthFunction:
             numbers = positive ** (-1.0 / self.power) - self.offset
         return np.where(inverse > 0, numbers, np.inf)
 
-    def scaled(self, factor: float) -> DepthFunction:
+    def scale(self, factor: float) -> DepthFunction:
         """The function of numbers that are so many times as large."""
         rate = None if self.rate is None else self.rate / factor
         return DepthFunction(self.power, self.offset * factor, rate)
@@ -83,7 +83,7 @@ class SampledDepth:
         low, high = np.percentile(self.values, [5, 95])
         return max(float(high - low), 1e-9 * float(abs(high)) + 1e-12)
 
-    def thinned(self, count: int) -> SampledDepth:
+    def subsample(self, count: int) -> SampledDepth:
         """About so many of them, evenly."""
         step = max(1, len(self.values) // count)
         return SampledDepth(self.x[::step], self.y[::step], self.values[::step])
@@ -101,7 +101,7 @@ class PlaneFit:
     """Share of the points on each plane."""
 
 
-def sampled(values: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"]) -> SampledDepth:
+def sample_depth(values: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"]) -> SampledDepth:
     """Evenly spread valid numbers of a map, each the median of its neighbourhood."""
     height, width = values.shape
     step = max(1, int(np.sqrt(valid.sum() / MAX_POINTS)))

@@ -30,7 +30,7 @@ from diorama_core.perception.inputs.depth.scale import (
     scale_evidence,
     unit_of,
 )
-from diorama_core.perception.inputs.depth.voids import measured
+from diorama_core.perception.inputs.depth.voids import find_measured_pixels
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
 from diorama_core.perception.inputs.source import Source, form_of
 from diorama_core.scene.types import Intrinsics
@@ -117,19 +117,21 @@ def read_depth(
     raw = _raw(source, photo)
     trusted, unsure = without_unsure(source, raw.values)
     trusted, upended = _positive(trusted, is_float=raw.is_float)
-    values, laid = photo.frame.laid_over(source.name, "depth", trusted)
+    values, laid = photo.frame.align_map(source.name, "depth", trusted)
     if options.encoding == "sunrgbd" and not raw.is_float:
-        values = _unrotated(values)
-    valid, voids = measured(values, is_float=raw.is_float)
+        values = _unrotate_bits(values)
+    valid, voids = find_measured_pixels(values, is_float=raw.is_float)
     if valid.sum() <= MIN_COVERAGE * valid.size:
         raise InputError(f"{source.name}: the depth is empty or nearly so; leave it out or choose another file")
     with np.errstate(invalid="ignore", over="ignore"):
         numbers = np.where(valid, values, 0).astype(np.float32)
-    over = None if options.kind != "auto" or valid.sum() < MIN_PIXELS else turned_over(numbers, valid, photo.photo.rgb)
+    over = None if options.kind != "auto" or valid.sum() < MIN_PIXELS else find_turn(numbers, valid, photo.photo.rgb)
     if over is not None:
-        numbers = turned(numbers, over)
+        numbers = apply_turn(numbers, over)
         valid, laid = numbers > 0, (*laid, f"the depth lies {over} over the photo, by the edges of both; it was turned")
-    depth, understood = _understood(source.name, numbers, valid, raw, options, _Scene.of(photo, boxes, intrinsics))
+    depth, understood = _convert_to_metres(
+        source.name, numbers, valid, raw, options, _Scene.of(photo, boxes, intrinsics)
+    )
     coverage = _check_plausible(source.name, depth, values, raw, options)
     resized, coarse = _resize_to_photo(depth, size)
     resized.setflags(write=False)
@@ -185,7 +187,7 @@ def _what_it_is(source: Source) -> str:
     return "this is not a picture or array of depth"
 
 
-def _understood(
+def _convert_to_metres(
     name: str,
     numbers: Float32[np.ndarray, "h w"],
     valid: Bool[np.ndarray, "h w"],
@@ -199,7 +201,7 @@ def _understood(
     if is_metric or (options.kind == "auto" and valid.sum() < MIN_PIXELS):
         return _to_metres(numbers, options.per_metre or stated), ()
     readings = depth_readings(numbers, valid, scene.boxes, scene.focal, options.kind)
-    reading, notes = chosen_reading(name, readings, raw.stated_kind, options.kind)
+    reading, notes = choose_reading(name, readings, raw.stated_kind, options.kind)
     if reading.kind == "inverse":
         depth, more = metric_depth(name, numbers, valid, reading.fit, scene.boxes, scene.focal)
         return depth.astype(np.float32), (*notes, *more)
@@ -239,7 +241,7 @@ def _positive(
     return -values, ("the depth is negative, as of a camera that looks along -z; its sign was changed",)
 
 
-def _unrotated(values: Shaped[np.ndarray, "*n"]) -> Shaped[np.ndarray, "*n"]:
+def _unrotate_bits(values: Shaped[np.ndarray, "*n"]) -> Shaped[np.ndarray, "*n"]:
     """SUN RGB-D's storage undone: the 16 bits were rotated left by three."""
     v = values.astype(np.uint32)
     return (((v >> 3) | (v << 13)) & 0xFFFF).astype(np.uint16)
@@ -273,7 +275,7 @@ def _unit_advice(median: float, raw: Shaped[np.ndarray, "h w"], about: RawDepth,
         return f"{read_as}; the numbers must be metres, or give their units per metre by --depth-scale"
     scale = options.per_metre or MILLIMETRES
     if options.encoding == "linear" and not about.is_float:
-        turned = _unrotated(raw[raw > 0]) / scale
+        turned = _unrotate_bits(raw[raw > 0]) / scale
         if ROOM_MEDIAN_M[0] <= float(np.median(turned)) <= ROOM_MEDIAN_M[1] and median > ROOM_MEDIAN_M[1]:
             return f"{read_as}; it looks like SUN RGB-D's rotated bits: add --depth-encoding sunrgbd"
     return f"{read_as}; set --depth-scale (units per metre, now {scale:g}) or --depth-encoding"
@@ -294,7 +296,7 @@ def _resize_to_photo(
     return resized, ()
 
 
-def turned_over(
+def find_turn(
     values: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"], rgb: UInt8[np.ndarray, "h2 w2 3"]
 ) -> str | None:
     """How a map lies over its photo, where that is clearly not as the photo; None otherwise.
@@ -321,8 +323,8 @@ def turned_over(
     return best if agreements[best] > max(as_is + MARGIN, MIN_AGREEMENT) else None
 
 
-def turned(values: Float[np.ndarray, "h w"], how: str) -> Float[np.ndarray, "h w"]:
-    """A map as it lies over its photo, `how` being what `turned_over` said of it."""
+def apply_turn(values: Float[np.ndarray, "h w"], how: str) -> Float[np.ndarray, "h w"]:
+    """A map as it lies over its photo, `how` being what `find_turn` said of it."""
     return np.ascontiguousarray(values[_TURNS[how]])
 
 
@@ -341,7 +343,7 @@ def _agreement(one: Float[np.ndarray, "h w"], other: Float[np.ndarray, "h w"], s
     return float((a * b).sum() / max(float(np.linalg.norm(a) * np.linalg.norm(b)), 1e-12))
 
 
-def chosen_reading(
+def choose_reading(
     name: str, readings: tuple[DepthReading, ...], stated_kind: str | None, kind: DepthKind
 ) -> tuple[DepthReading, tuple[str, ...]]:
     """The reading that is used, and what to say about it.
@@ -363,7 +365,7 @@ def chosen_reading(
     depth, inverse = of_kind["depth"], of_kind["inverse"]
     if stated_kind == "inverse":
         best = inverse
-    doubt = _bent(name, readings)
+    doubt = _check_bent_reading(name, readings)
     if inverse.fit.explained - depth.fit.explained > CONTRADICTING_PLANES and inverse.order < MIN_ORDER:
         raise InputError(
             f"{name}: this contradicts the picture: walls and floor are not flat, near and far are not the photo's; "
@@ -382,7 +384,7 @@ def chosen_reading(
     )
 
 
-def _bent(name: str, readings: tuple[DepthReading, ...]) -> tuple[str, ...]:
+def _check_bent_reading(name: str, readings: tuple[DepthReading, ...]) -> tuple[str, ...]:
     """A note where walls and floor are flatter under the root or logarithm of depth than under all other readings.
 
     Raises:

@@ -60,13 +60,13 @@ def metric_depth(
         moved = PlaneFit(fit.explained, fit.planes + np.array([0.0, 0.0, offset]), fit.shares)
         score, angle_focal = focal_score(moved)
         used = focal if focal is not None else angle_focal
-        scatter = size_scatter(_inverted(values, valid, offset, smallest), valid, used, boxes)
+        scatter = size_scatter(_invert(values, valid, offset, smallest), valid, used, boxes)
         total = score - SCATTER_WEIGHT * scatter
         if best is None or total > best[0]:
             best = total, float(offset), used
     assert best is not None
     _, offset, used = best
-    depth = _inverted(values, valid, offset, smallest)
+    depth = _invert(values, valid, offset, smallest)
     moved = PlaneFit(fit.explained, fit.planes + np.array([0.0, 0.0, offset]), fit.shares)
     factor = _factor(name, scale_evidence(depth, valid, moved, used, boxes))
     note = f"{name} is inverse depth; its size and offset were fitted to walls, floor and the usual sizes of objects"
@@ -120,6 +120,6 @@ def _factor(name: str, evidence: ScaleEvidence | None) -> float:
     return float(np.exp(evidence.log_scale))
 
 
-def _inverted(values: np.ndarray, valid: np.ndarray, offset: float, smallest: float) -> np.ndarray:
+def _invert(values: np.ndarray, valid: np.ndarray, offset: float, smallest: float) -> np.ndarray:
     least = 0.02 * smallest
     return np.where(valid, 1.0 / np.maximum(values + offset, least), 0.0)

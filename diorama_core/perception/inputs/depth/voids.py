@@ -24,7 +24,9 @@ MIN_SURE = 0.05
 """Share of the measured pixels that must be sure: fewer are no depth of a room."""
 
 
-def measured(values: Shaped[np.ndarray, "h w"], *, is_float: bool) -> tuple[Bool[np.ndarray, "h w"], tuple[str, ...]]:
+def find_measured_pixels(
+    values: Shaped[np.ndarray, "h w"], *, is_float: bool
+) -> tuple[Bool[np.ndarray, "h w"], tuple[str, ...]]:
     """Where a map's numbers are measurements, and a note about numbers that mean the opposite.
 
     Zero, negative numbers, NaN, infinities and a renderer's sky never are. Beyond these, the ends of the integer type

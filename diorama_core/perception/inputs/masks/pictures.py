@@ -26,7 +26,7 @@ class MaskMap:
     notes: tuple[str, ...] = ()
 
 
-def painted(masks: Sequence[Bool[np.ndarray, "_ _"]], name: str, what: str) -> MaskMap:
+def paint_masks(masks: Sequence[Bool[np.ndarray, "_ _"]], name: str, what: str) -> MaskMap:
     """Overlapping masks as one map, smaller ones in front.
 
     Args:
@@ -92,7 +92,7 @@ def read_picture(source: Source) -> MaskMap:
     if picture.format not in EXACT_FORMATS:
         raise InputError(f"{source.name}: masks need exact colours, which {picture.format} blurs; save them as PNG")
     if picture.format == "TIFF" and getattr(picture, "n_frames", 1) > 1:
-        return painted(_pages(picture, source), source.name, "pages")
+        return paint_masks(_pages(picture, source), source.name, "pages")
     load_pixels(picture, source, "mask")
     try:
         return _picture_masks(picture, source.name)

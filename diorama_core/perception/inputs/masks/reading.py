@@ -43,10 +43,10 @@ def read_masks(
     form = form_of(MASK_FORMS, content)
     assert form is not None  # the last form takes any file
     mask_map = form.read(content)
-    values, laid = photo.frame.laid_over(source.name, "mask", mask_map.values)
+    values, laid = photo.frame.align_map(source.name, "mask", mask_map.values)
     size = (photo.photo.width, photo.photo.height)
     if (values.shape[1], values.shape[0]) != size:
-        values = _resized(values, size)
+        values = _resize_nearest(values, size)
     values, around = without_surroundings(with_hard_edges(values), boxes)
     instances, dropped = _without_specks(source.name, values)
     instances, split = split_by_boxes(instances, boxes)
@@ -119,7 +119,7 @@ def split_by_boxes(
     return apart, (note,) if several else ()
 
 
-def _resized(values: Shaped[np.ndarray, "h w *c"], size: tuple[int, int]) -> Shaped[np.ndarray, "h2 w2 *c"]:
+def _resize_nearest(values: Shaped[np.ndarray, "h w *c"], size: tuple[int, int]) -> Shaped[np.ndarray, "h2 w2 *c"]:
     """Nearest neighbour by pixel centres."""
     rows = ((np.arange(size[1]) + 0.5) * values.shape[0] / size[1]).astype(int)
     columns = ((np.arange(size[0]) + 0.5) * values.shape[1] / size[0]).astype(int)

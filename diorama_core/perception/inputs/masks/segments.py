@@ -19,10 +19,10 @@ from diorama_core.perception.inputs.boxes.data_sets import is_data_set, photo_of
 from diorama_core.perception.inputs.boxes.entry import BoxText, Size
 from diorama_core.perception.inputs.boxes.markup import image_of, is_cvat
 from diorama_core.perception.inputs.boxes.nested import size_in
-from diorama_core.perception.inputs.boxes.table import parsed
+from diorama_core.perception.inputs.boxes.table import parse_box_text
 from diorama_core.perception.inputs.boxes.tools import is_via, regions_of
 from diorama_core.perception.inputs.json_values import objects_of, size_of, whole_numbers
-from diorama_core.perception.inputs.masks.pictures import MAX_MASK_MEGAPIXELS, MaskMap, one_object, painted
+from diorama_core.perception.inputs.masks.pictures import MAX_MASK_MEGAPIXELS, MaskMap, one_object, paint_masks
 from diorama_core.perception.inputs.source import Source
 
 MAX_TOTAL_MEGAPIXELS = 600
@@ -49,7 +49,7 @@ def read_segments(source: Source, photo_name: str, photo_size: Size) -> MaskMap:
             raise InputError(f"{source.name}: its masks have too many pixels together; reduce them first")
         if mask.any():
             masks.append(mask)
-    return painted(masks, source.name, "segments")
+    return paint_masks(masks, source.name, "segments")
 
 
 def is_polygon_list(source: Source) -> bool:
@@ -70,8 +70,8 @@ def read_polygon_list(source: Source, photo_size: Size) -> MaskMap:
         shares = [float(v) for v in line.split()[1:]]
         if shares:
             pixels = [v * photo_size[k % 2] for k, v in enumerate(shares)]
-            masks.append(filled_polygon([pixels], photo_size, source.name))
-    return painted([m for m in masks if m.any()], source.name, "polygons")
+            masks.append(fill_polygon([pixels], photo_size, source.name))
+    return paint_masks([m for m in masks if m.any()], source.name, "polygons")
 
 
 def _photo_annotations(text: BoxText) -> tuple[Any, Size | None]:
@@ -91,9 +91,9 @@ def _photo_annotations(text: BoxText) -> tuple[Any, Size | None]:
 def _mask(segment: Any, size: Size, name: str) -> Bool[np.ndarray, "h w"]:
     if isinstance(segment, dict):
         if "rle" in segment:
-            return decoded_brush(segment, name)
-        return _bitmap(segment, size, name) if "data" in segment else decoded_runs(segment, name)
-    return filled_polygon(segment, size, name)
+            return decode_brush(segment, name)
+        return _bitmap(segment, size, name) if "data" in segment else decode_runs(segment, name)
+    return fill_polygon(segment, size, name)
 
 
 def _bitmap(segment: dict[str, Any], size: Size, name: str) -> Bool[np.ndarray, "h w"]:
@@ -159,7 +159,7 @@ def _outline(value: dict[str, Any]) -> list[Any] | None:
     return None
 
 
-def filled_polygon(rings: list[Any], size: Size, name: str) -> Bool[np.ndarray, "h w"]:
+def fill_polygon(rings: list[Any], size: Size, name: str) -> Bool[np.ndarray, "h w"]:
     """Rings of x, y, x, y... or of [x, y] filled.
 
     Raises:
@@ -190,7 +190,7 @@ def read_cvat_masks(source: Source, photo_name: str, photo_size: Size) -> MaskMa
     Raises:
         InputError: it is another XML, of other pictures only, without masks, or damaged.
     """
-    text = parsed(source, photo_name, photo_size)
+    text = parse_box_text(source, photo_name, photo_size)
     image = image_of(text.document.findall("image"), text) if isinstance(text.document, Element) else None
     if not is_cvat(text) or image is None:
         raise InputError(f"{source.name}: this XML holds no masks; give CVAT's, JSON with polygons, or pictures")
@@ -204,13 +204,13 @@ def read_cvat_masks(source: Source, photo_name: str, photo_size: Size) -> MaskMa
         masks = [_figure_mask(figure, size, source.name) for figure in figures]
     except (ValueError, OverflowError) as error:
         raise InputError(f"{source.name}: a mask of this CVAT file is damaged; export it again") from error
-    return painted([m for m in masks if m.any()], source.name, "segments")
+    return paint_masks([m for m in masks if m.any()], source.name, "segments")
 
 
 def _figure_mask(figure: Element, size: Size, name: str) -> Bool[np.ndarray, "h w"]:
     if figure.tag == "polygon":
         pairs = [[float(v) for v in pair.split(",")] for pair in (figure.get("points") or "").split(";")]
-        return filled_polygon([pairs], size, name)
+        return fill_polygon([pairs], size, name)
     left, top, width, height = (int(figure.get(key) or 0) for key in ("left", "top", "width", "height"))
     runs = [int(v) for v in (figure.get("rle") or "").split(",")]
     inside = min(left, top) >= 0 and left + width <= size[0] and top + height <= size[1]
@@ -222,7 +222,7 @@ def _figure_mask(figure: Element, size: Size, name: str) -> Bool[np.ndarray, "h 
     return mask
 
 
-def decoded_runs(segment: Mapping[str, Any], name: str) -> Bool[np.ndarray, "h w"]:
+def decode_runs(segment: Mapping[str, Any], name: str) -> Bool[np.ndarray, "h w"]:
     """The mask of an object with `size` (height, width) and `counts`.
 
     Raises:
@@ -231,7 +231,7 @@ def decoded_runs(segment: Mapping[str, Any], name: str) -> Bool[np.ndarray, "h w
     size, counts = segment.get("size"), segment.get("counts")
     try:
         height, width = whole_numbers(size)
-        runs = _unpacked(counts) if isinstance(counts, str) else whole_numbers(counts)
+        runs = _unpack_counts(counts) if isinstance(counts, str) else whole_numbers(counts)
     except (ValueError, OverflowError):
         raise InputError(f"{name}: its run lengths are damaged; export the masks again") from None
     if height <= 0 or width <= 0 or height * width > MAX_MASK_MEGAPIXELS * 1_000_000:
@@ -242,7 +242,7 @@ def decoded_runs(segment: Mapping[str, Any], name: str) -> Bool[np.ndarray, "h w
     return np.repeat(inside, runs).reshape(width, height).T
 
 
-def decoded_brush(segment: Mapping[str, Any], name: str) -> Bool[np.ndarray, "h w"]:
+def decode_brush(segment: Mapping[str, Any], name: str) -> Bool[np.ndarray, "h w"]:
     """The mask of Label Studio's brush: bytes of a packed picture of four channels, of which the last is the mask.
 
     Args:
@@ -292,7 +292,7 @@ def _words(packed: bytes, count: int) -> Iterator[UInt8[np.ndarray, "_"]]:
         raise ValueError(done)
 
 
-def _unpacked(text: str) -> list[int]:
+def _unpack_counts(text: str) -> list[int]:
     """The counts of COCO's text: five bits a character, lowest first, from the third count on as differences."""
     runs: list[int] = []
     value, shift = 0, 0

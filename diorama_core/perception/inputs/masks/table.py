@@ -16,7 +16,7 @@ from diorama_core.perception.inputs.masks.pictures import (
     MAX_STACKED,
     MaskMap,
     one_object,
-    painted,
+    paint_masks,
     read_picture,
     without_void,
 )
@@ -121,7 +121,7 @@ def read_folder_of_masks(folder: Folder) -> MaskMap:
     masks: list[Bool[np.ndarray, "h w"]] = []
     left_out = []
     for file in pictures[: MAX_STACKED + 1]:
-        mask = one_object(file) if file.suffix != ".npy" else _checked_mask(file)
+        mask = one_object(file) if file.suffix != ".npy" else _read_mask(file)
         if mask is None:
             left_out.append(file.name)
             continue
@@ -135,7 +135,7 @@ def read_folder_of_masks(folder: Folder) -> MaskMap:
         raise InputError(f"{folder.name}: {shown} is not white on black; give one PNG for each object, white on black")
     if len(masks) > 1 and all(_is_around(mask) for mask in masks):
         masks, notes = [~mask for mask in masks], (*notes, f"{folder.name}: the masks are black on white")
-    painted_map = painted(masks, folder.name, "masks")
+    painted_map = paint_masks(masks, folder.name, "masks")
     return MaskMap(painted_map.values, (*painted_map.notes, *notes))
 
 
@@ -143,7 +143,7 @@ def _is_around(mask: Bool[np.ndarray, "h w"]) -> bool:
     return float(np.concatenate([mask[0], mask[-1], mask[:, 0], mask[:, -1]]).mean()) > AROUND_SHARE
 
 
-def _checked_mask(file: Source) -> Bool[np.ndarray, "h w"]:
+def _read_mask(file: Source) -> Bool[np.ndarray, "h w"]:
     array = np.squeeze(_array(file))
     if array.ndim != 2:
         raise InputError(f"{file.name}: one mask must be (h, w), this has shape {array.shape}")
@@ -166,14 +166,14 @@ def read_arrays(source: Source) -> MaskMap:
         return without_void(ids.astype(np.int32), most if most <= 65535 else 255)
     if array.ndim == 3 and 0 not in array.shape:
         first = array if array.shape[2] > array.shape[0] or array.shape[0] == 1 else np.moveaxis(array, -1, 0)
-        return painted([m > 0 for m in first if (m > 0).any()], source.name, "masks")
+        return paint_masks([m > 0 for m in first if (m > 0).any()], source.name, "masks")
     raise InputError(f"{source.name}: masks must be (h, w) ids or (n, h, w), this has shape {array.shape}")
 
 
 def _array(source: Source) -> np.ndarray:
     try:
         if not source.data.startswith(b"PK\x03\x04"):
-            return _checked_array(source.data)
+            return _load_array(source.data)
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
             names = [m.filename for m in archive.infolist() if m.filename.endswith(".npy")]
             wanted = [
@@ -186,7 +186,7 @@ def _array(source: Source) -> np.ndarray:
             info = archive.getinfo((wanted or names)[0])
             if info.file_size > MAX_TOTAL_MEGAPIXELS * 1_000_000:
                 raise InputError(f"{source.name}: its masks are too large; reduce them first")
-            return _checked_array(archive.read(info))
+            return _load_array(archive.read(info))
     except InputError:
         raise
     except Exception as error:  # a damaged file raises almost anything
@@ -197,7 +197,7 @@ def _array_of_several(archive: zipfile.ZipFile, names: list[str], name: str) -> 
     """The one array that can be a map, or all of them as one object each."""
     if sum(archive.getinfo(n).file_size for n in names) > MAX_TOTAL_MEGAPIXELS * 1_000_000:
         raise InputError(f"{name}: its masks are too large; reduce them first")
-    every = [np.squeeze(_checked_array(archive.read(n))) for n in names]
+    every = [np.squeeze(_load_array(archive.read(n))) for n in names]
     maps = [a for a in every if a.ndim == 2 and a.dtype.kind in "iub" and min(a.shape) > 4]
     if len(maps) == 1:
         return maps[0]
@@ -206,7 +206,7 @@ def _array_of_several(archive: zipfile.ZipFile, names: list[str], name: str) -> 
     return np.stack([a > 0 for a in maps])
 
 
-def _checked_array(data: bytes) -> np.ndarray:
+def _load_array(data: bytes) -> np.ndarray:
     """An array whose header promises no more than the file holds."""
     stream = io.BytesIO(data)
     version = npy.read_magic(stream)

@@ -77,15 +77,15 @@ def _without_blur(off: np.ndarray, margins: Margins) -> Margins:
     height, width = off.shape
     left, top, right, bottom = margins
     mixed = [
-        _mixed_lines(off[top:, left : width - right]) if top else 0,
-        _mixed_lines(off[: height - bottom, left : width - right][::-1]) if bottom else 0,
-        _mixed_lines(off[top : height - bottom, left:].T) if left else 0,
-        _mixed_lines(off[top : height - bottom, : width - right].T[::-1]) if right else 0,
+        _count_mixed_lines(off[top:, left : width - right]) if top else 0,
+        _count_mixed_lines(off[: height - bottom, left : width - right][::-1]) if bottom else 0,
+        _count_mixed_lines(off[top : height - bottom, left:].T) if left else 0,
+        _count_mixed_lines(off[top : height - bottom, : width - right].T[::-1]) if right else 0,
     ]
     return left + mixed[2], top + mixed[0], right + mixed[3], bottom + mixed[1]
 
 
-def _mixed_lines(off: np.ndarray) -> int:
+def _count_mixed_lines(off: np.ndarray) -> int:
     shares = off[: BLUR_PX + 1].mean(axis=1)
     return int(np.argmax(shares >= INNER_SHARE)) if (shares >= INNER_SHARE).any() else 0
 
@@ -153,7 +153,7 @@ class PhotoFrame:
             width, height = height, width
         return x1, y1, x2, y2
 
-    def laid_over(
+    def align_map(
         self, name: str, what: str, values: Shaped[np.ndarray, "h w *c"]
     ) -> tuple[Shaped[np.ndarray, "h2 w2 *c"], tuple[str, ...]]:
         """A map as it lies over the photo without its border, whether it came with it, or unturned; and what was done.
@@ -166,10 +166,10 @@ class PhotoFrame:
         Raises:
             InputError: its proportions are neither those of the photo nor of its stored pixels.
         """
-        laid, notes = self._laid_over(name, what, values)
+        laid, notes = self._align_map(name, what, values)
         return (laid[::-1, ::-1] if self.half_turned else laid), notes
 
-    def _laid_over(
+    def _align_map(
         self, name: str, what: str, values: Shaped[np.ndarray, "h w *c"]
     ) -> tuple[Shaped[np.ndarray, "h2 w2 *c"], tuple[str, ...]]:
         height, width = values.shape[:2]

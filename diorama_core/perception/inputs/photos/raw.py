@@ -72,7 +72,7 @@ def largest_picture(source: Source, kind: str) -> tuple[Source, int, tuple[str, 
     """
     largest = max(_pictures(source.data), key=lambda p: p[0][0] * p[0][1], default=None)
     if largest is None or max(largest[0]) < SMALL_SIDE_PX:
-        developed = _developed(source)
+        developed = _develop(source)
         if developed is not None:
             return developed, 1, (f"{source.name} is a camera's raw file ({kind}); it was developed",)
     if largest is None:
@@ -119,7 +119,7 @@ def _readable_size(content: bytes, kind: str) -> tuple[int, int] | None:
         return None
 
 
-def _developed(source: Source) -> Source | None:
+def _develop(source: Source) -> Source | None:
     """The sensor's data as a picture; None where rawpy is not installed or does not read them."""
     try:
         import rawpy

@@ -82,7 +82,7 @@ def read_photo(source: Source, max_side: int, *, sphere: bool = False, flat: boo
         notes += check_perspective(source.name, upright, exif, has_focal=focal is not None)
     brighter, more = dark_colours(upright, source)
     rgb, bits = _to_rgb(_coarser(brighter, max_side), source.name)
-    reduced, smaller = _reduced(rgb, original, max_side)
+    reduced, smaller = _downscale(rgb, original, max_side)
     frame = PhotoFrame(original, (0, 0, 0, 0), orientation)
     cut: tuple[str, ...] = ()
     if not sphere:
@@ -195,7 +195,7 @@ def _to_rgb(picture: Image.Image, name: str) -> tuple[Image.Image, tuple[str, ..
     return picture.convert("RGB"), ()
 
 
-def _reduced(
+def _downscale(
     rgb: Image.Image, original: tuple[int, int], max_side: int
 ) -> tuple[UInt8[np.ndarray, "h w 3"], tuple[str, ...]]:
     factor = min(1.0, max_side / max(original))
@@ -294,7 +294,7 @@ def check_perspective(name: str, picture: Image.Image, exif: Mapping[int, Any], 
         SphericalPhotoError: it shows all directions.
         InputError: it is another panorama.
     """
-    projection = _stated_projection(picture)
+    projection = _read_projection(picture)
     aspect = max(picture.size) / min(picture.size)
     crop = "crop it to one direction, without its bent lines"
     if projection == "equirectangular" or (projection is None and _is_sphere(picture)):
@@ -323,11 +323,11 @@ def check_sphere(name: str, picture: Image.Image) -> None:
     if not _SPHERE_ASPECT[0] <= picture.width / picture.height <= _SPHERE_ASPECT[1]:
         size = f"{picture.width} x {picture.height}"
         raise InputError(f"{name}: {size} is not 2 : 1, so it is no whole 360 degree photo; stitch all directions")
-    if _stated_projection(picture) != "equirectangular" and not _is_sphere(picture):
+    if _read_projection(picture) != "equirectangular" and not _is_sphere(picture):
         raise InputError(f"{name}: its left and right sides do not meet, so it is no 360 degree photo")
 
 
-def _stated_projection(picture: Image.Image) -> str | None:
+def _read_projection(picture: Image.Image) -> str | None:
     """The projection that the header names (GPano), in lower case."""
     xmp = picture.info.get("xmp", b"")
     match = _PROJECTION.search(xmp.encode() if isinstance(xmp, str) else bytes(xmp))

@@ -9,7 +9,7 @@ from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.boxes.agreement import EdgeMap, is_upside_down
 from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile
-from diorama_core.perception.inputs.boxes.placing import placed_boxes
+from diorama_core.perception.inputs.boxes.placing import place_boxes
 from diorama_core.perception.inputs.photos.frame import PhotoFrame
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
 
@@ -36,7 +36,7 @@ def test_the_edges_of_the_picture_know_the_right_boxes() -> None:
 
 
 def test_right_boxes_stay_without_a_word() -> None:
-    found, notes = placed_boxes("b", file_of(THINGS), painted())
+    found, notes = place_boxes("b", file_of(THINGS), painted())
     assert found == THINGS
     assert notes == ()
 
@@ -44,7 +44,7 @@ def test_right_boxes_stay_without_a_word() -> None:
 @pytest.mark.parametrize("share", [1 / 2, 2 / 3, 320 / 480])
 def test_boxes_of_a_smaller_copy_are_scaled_and_said(share: float) -> None:
     small = [tuple(share * v for v in b) for b in THINGS]
-    found, notes = placed_boxes("b", file_of(small), painted())
+    found, notes = place_boxes("b", file_of(small), painted())
     np.testing.assert_allclose(found, THINGS, atol=2.0)
     assert f"{round(WIDTH * share)} x {round(HEIGHT * share)}" in notes[0]
 
@@ -54,25 +54,25 @@ def test_few_boxes_in_a_corner_are_left_and_several_are_remarked() -> None:
         Photo(np.full((HEIGHT, WIDTH, 3), 90, np.uint8), "p", (WIDTH, HEIGHT)), PhotoFrame((WIDTH, HEIGHT))
     )
     small = [tuple(v / 2 for v in b) for b in THINGS]
-    found, notes = placed_boxes("b", file_of(small), plain)
+    found, notes = place_boxes("b", file_of(small), plain)
     assert found == small
     assert "may be of a smaller copy (240 x 180)" in notes[0]
-    assert placed_boxes("b", file_of(small[:2]), plain) == (small[:2], ())
+    assert place_boxes("b", file_of(small[:2]), plain) == (small[:2], ())
 
 
 def test_a_stated_size_scales_and_another_picture_s_is_refused() -> None:
-    found, notes = placed_boxes("b", file_of([(10, 10, 100, 80)], size=(240, 180)), painted())
+    found, notes = place_boxes("b", file_of([(10, 10, 100, 80)], size=(240, 180)), painted())
     assert found == [(20, 20, 200, 160)]
     assert "copy of 240 x 180" in notes[0]
     with pytest.raises(InputError, match="of a picture of 300 x 300"):
-        placed_boxes("b", file_of([(10, 10, 100, 80)], size=(300, 300)), painted())
+        place_boxes("b", file_of([(10, 10, 100, 80)], size=(300, 300)), painted())
 
 
 @pytest.mark.parametrize("orientation", range(2, 9))
 def test_boxes_of_unturned_pixels_are_turned(orientation: int) -> None:
     photo = painted(orientation)
     stored = _stored_boxes(photo.frame)
-    found, notes = placed_boxes("b", file_of(stored), photo)
+    found, notes = place_boxes("b", file_of(stored), photo)
     np.testing.assert_allclose(found, THINGS)
     assert f"orientation {orientation}" in notes[0]
 
@@ -93,14 +93,14 @@ def _stored_boxes(frame: PhotoFrame) -> list[tuple[float, float, float, float]]:
 def test_shares_percent_and_sizes_are_seen() -> None:
     photo = painted()
     shares = [(x1 / WIDTH, y1 / HEIGHT, x2 / WIDTH, y2 / HEIGHT) for x1, y1, x2, y2 in THINGS]
-    found, notes = placed_boxes("b", file_of(shares), photo)
+    found, notes = place_boxes("b", file_of(shares), photo)
     np.testing.assert_allclose(found, THINGS)
     assert "shares" in notes[0]
-    found, notes = placed_boxes("b", file_of([tuple(100 * v for v in b) for b in shares]), photo)
+    found, notes = place_boxes("b", file_of([tuple(100 * v for v in b) for b in shares]), photo)
     np.testing.assert_allclose(found, THINGS)
     assert "percent" in notes[0]
     sized = [(x1, y1, x2 - x1, y2 - y1) for x1, y1, x2, y2 in THINGS]
-    found, notes = placed_boxes("b", file_of(sized, ambiguous_layout=True), photo)
+    found, notes = place_boxes("b", file_of(sized, ambiguous_layout=True), photo)
     np.testing.assert_allclose(found, THINGS)
     assert "width, height" in notes[0]
 
@@ -119,6 +119,6 @@ def test_boxes_that_fit_the_photo_are_of_no_larger_copy() -> None:
     blank = DecodedPhoto(Photo(grey, "p.png", (WIDTH, HEIGHT)), PhotoFrame((WIDTH, HEIGHT)))
     for photo in (painted(), blank):
         inset = [(x1 + 7, y1 + 9, x2 - 11, y2 - 5) for x1, y1, x2, y2 in THINGS]
-        corners, notes = placed_boxes("boxes", file_of(inset), photo)
+        corners, notes = place_boxes("boxes", file_of(inset), photo)
         assert corners == [tuple(map(float, b)) for b in inset]
         assert notes == ()

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.perception.inputs.boxes.dictionaries import word_of
-from diorama_core.perception.inputs.boxes.reading import read_boxes, understood
+from diorama_core.perception.inputs.boxes.reading import read_boxes, understand_word
 from diorama_core.perception.inputs.source import Source
 from tests.perception.inputs.files import HEIGHT, WIDTH, box, boxes_json, decoded, encoded, picture, refusal
 
@@ -52,10 +52,10 @@ def test_what_is_no_list_of_boxes_is_refused_with_an_example(data: bytes) -> Non
 
 
 def test_unknown_words_are_understood_as_the_nearest_and_said() -> None:
-    category, label, note = understood("armchiar")
+    category, label, note = understand_word("armchiar")
     assert (category, label) == ("armchair", "armchiar")
     assert "armchair" in note
-    assert understood("object")[1:] == ("object", "")
+    assert understand_word("object")[1:] == ("object", "")
 
 
 class TestBoxes:

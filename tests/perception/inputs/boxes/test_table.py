@@ -11,7 +11,7 @@ from diorama_core.errors import InputError
 from diorama_core.perception.inputs.boxes import data_sets, lines, lists, markup, tools
 from diorama_core.perception.inputs.boxes.dictionaries import box_of, word_of
 from diorama_core.perception.inputs.boxes.reading import read_boxes
-from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parsed
+from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parse_box_text
 from diorama_core.perception.inputs.source import Source, form_of
 from tests.perception.inputs.files import decoded
 
@@ -240,11 +240,11 @@ RECOGNISED_BY = {
 @pytest.mark.parametrize("name", RECOGNISED_BY)
 def test_each_form_knows_its_own_files(name: str) -> None:
     for written, document in FORMS:
-        text = parsed(Source(content(document), "file"), "photo.png", SIZE)
+        text = parse_box_text(Source(content(document), "file"), "photo.png", SIZE)
         if written == name:
             assert RECOGNISED_BY[name](text)
     for strange in ("[]", "{}", "<a/>", "one line of text", "[[1]]", '[{"a": 1}]', '{"shapes": 1}'):
-        assert not RECOGNISED_BY[name](parsed(Source(strange.encode(), "file"), "photo.png", SIZE))
+        assert not RECOGNISED_BY[name](parse_box_text(Source(strange.encode(), "file"), "photo.png", SIZE))
 
 
 def content(document: object) -> bytes:
@@ -289,7 +289,7 @@ def test_utf_16_is_text() -> None:
 @pytest.mark.parametrize(("name", "document"), FORMS, ids=[f"{k}-{n}" for k, (n, _) in enumerate(FORMS)])
 def test_every_form_gives_the_same_boxes(name: str, document: object) -> None:
     source = Source(content(document), "file")
-    form = form_of(BOX_FORMS, parsed(source, "photo.png", SIZE))
+    form = form_of(BOX_FORMS, parse_box_text(source, "photo.png", SIZE))
     assert form is not None
     assert form.name == name
     found, _ = read_boxes(source, decoded(*SIZE))

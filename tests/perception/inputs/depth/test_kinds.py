@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from diorama_core.perception.inputs.depth.kinds import depth_order, depth_readings, rays_of
-from diorama_core.perception.inputs.depth.planes import PlaneFit, planes_of, sampled
-from diorama_core.perception.inputs.depth.reading import chosen_reading
+from diorama_core.perception.inputs.depth.planes import PlaneFit, planes_of, sample_depth
+from diorama_core.perception.inputs.depth.reading import choose_reading
 from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
 from diorama_core.perception.inputs.depth.scale import (
     AmbiguousDepthError,
@@ -59,7 +59,7 @@ def test_near_and_far() -> None:
 
 
 def test_planes_of_a_room_meet_at_right_angles_under_its_focal_length() -> None:
-    fit = planes_of(sampled(DEPTH, SEEN))
+    fit = planes_of(sample_depth(DEPTH, SEEN))
     assert fit.explained > 0.7
     turned = np.array([[np.sin(a), 0.0, np.cos(a)] for a in (0.5, 0.5 + np.pi / 2)])  # two walls seen at an angle
     walls = PlaneFit(1.0, turned * [1 / FOCAL, 1 / FOCAL, 1.0], np.array([0.5, 0.4]))
@@ -118,9 +118,9 @@ def test_roots_and_logarithms_are_asked_for_without_any_box(kind: str, values: n
     values = values.astype(np.float32)
     readings = depth_readings(values, SEEN, (), None)
     with pytest.raises(AmbiguousDepthError, match=f"--depth-kind {kind}") as asked:
-        chosen_reading("d.npy", readings, None, "auto")
+        choose_reading("d.npy", readings, None, "auto")
     assert [c.kind for c in asked.value.choices] == [kind, "depth"]
-    reading, _ = chosen_reading("d.npy", depth_readings(values, SEEN, (), None, kind), None, kind)
+    reading, _ = choose_reading("d.npy", depth_readings(values, SEEN, (), None, kind), None, kind)
     depth, notes = metric_of_bent("d.npy", values, SEEN, reading, THINGS, FOCAL, None)
     off = np.log(depth / DEPTH)
     assert abs(np.median(off)) < 0.25
@@ -131,7 +131,7 @@ def test_roots_and_logarithms_are_asked_for_without_any_box(kind: str, values: n
 def test_roots_and_logarithms_in_a_stated_unit_are_exact() -> None:
     for kind, values in (("root", 8.0 * np.sqrt(DEPTH)), ("logarithm", 8.0 * np.log(DEPTH))):
         reading = depth_readings(values, SEEN, (), None, kind)
-        chosen, _ = chosen_reading("d.npy", reading, None, kind)
+        chosen, _ = choose_reading("d.npy", reading, None, kind)
         depth, notes = metric_of_bent("d.npy", values, SEEN, chosen, (), None, 8.0)
         np.testing.assert_allclose(depth, DEPTH, rtol=1e-5)
         assert notes == ()
@@ -145,8 +145,8 @@ def test_a_kind_that_is_given_is_among_the_readings(kind: str) -> None:
 def test_depth_whose_planes_noise_hides_is_no_other_function() -> None:
     for share in (0.005, 0.02, 0.05):
         readings = depth_readings(noisy(DEPTH, share), SEEN, (), None)
-        assert chosen_reading("d.npy", readings, None, "auto")[0].kind == "depth"
-        assert chosen_reading("d.npy", readings, None, "auto")[1] == ()
+        assert choose_reading("d.npy", readings, None, "auto")[0].kind == "depth"
+        assert choose_reading("d.npy", readings, None, "auto")[1] == ()
 
 
 @pytest.mark.parametrize(("unit", "likely"), [(512.0, {500.0, 512.0}), (256.0, {256.0}), (5000.0, {5000.0, 4000.0})])

@@ -14,6 +14,6 @@ NUMBERS = np.linspace(0.3, 4.0, 20)
 def test_there_and_back(function: DepthFunction) -> None:
     inverse = function.inverse_depth(NUMBERS)
     np.testing.assert_allclose(function.numbers(inverse), NUMBERS)
-    larger = function.scaled(10.0).inverse_depth(10.0 * NUMBERS)
+    larger = function.scale(10.0).inverse_depth(10.0 * NUMBERS)
     assert np.ptp(np.log(larger / inverse)) < 1e-9
     assert np.isinf(function.numbers(np.array([-1.0, 0.0]))).all()

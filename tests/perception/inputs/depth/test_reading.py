@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.perception.inputs.depth.reading import FARTHEST_M, DepthOptions, read_depth, turned, turned_over
+from diorama_core.perception.inputs.depth.reading import FARTHEST_M, DepthOptions, apply_turn, find_turn, read_depth
 from diorama_core.perception.inputs.depth.voids import SKY_M
 from diorama_core.perception.inputs.source import Source
 from tests.perception.inputs.depth.rooms import room
@@ -228,13 +228,13 @@ class TestDepth:
 @pytest.mark.parametrize("inverse", [True, False])
 def test_turned_maps_are_told_and_turned(how: str, inverse: bool) -> None:
     values = 1 / DEPTH if inverse else DEPTH
-    over = turned(values, how)
-    assert turned_over(over, over > 0, PHOTO) == how
-    np.testing.assert_array_equal(turned(over, how), values)
+    over = apply_turn(values, how)
+    assert find_turn(over, over > 0, PHOTO) == how
+    np.testing.assert_array_equal(apply_turn(over, how), values)
 
 
 def test_right_maps_and_plain_photos_say_nothing() -> None:
-    assert turned_over(DEPTH, DEPTH > 0, PHOTO) is None
-    assert turned_over(DEPTH, DEPTH > 0, np.full_like(PHOTO, 90)) is None
+    assert find_turn(DEPTH, DEPTH > 0, PHOTO) is None
+    assert find_turn(DEPTH, DEPTH > 0, np.full_like(PHOTO, 90)) is None
     holes = DEPTH * (np.random.default_rng(1).random(DEPTH.shape) > 0.9)
-    assert turned_over(holes, holes > 0, PHOTO) is None
+    assert find_turn(holes, holes > 0, PHOTO) is None

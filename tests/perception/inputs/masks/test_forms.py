@@ -16,9 +16,9 @@ from PIL import Image
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.masks.pictures import painted, read_picture, without_void
+from diorama_core.perception.inputs.masks.pictures import paint_masks, read_picture, without_void
 from diorama_core.perception.inputs.masks.reading import read_masks
-from diorama_core.perception.inputs.masks.segments import decoded_runs, is_markup, read_segments
+from diorama_core.perception.inputs.masks.segments import decode_runs, is_markup, read_segments
 from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent, read_arrays, read_folder_of_masks
 from diorama_core.perception.inputs.source import Folder, Source, form_of, read_folder
 from tests.perception.inputs.files import decoded, encoded, npy
@@ -139,11 +139,11 @@ def runs_of(mask: np.ndarray) -> list[int]:
 @pytest.mark.parametrize("as_text", [True, False])
 def test_run_lengths(as_text: bool) -> None:
     segments = [{"size": [HEIGHT, WIDTH], "counts": (packed if as_text else list)(runs_of(m))} for m in (LARGE, SMALL)]
-    np.testing.assert_array_equal(decoded_runs(segments[0], "m"), LARGE)
+    np.testing.assert_array_equal(decode_runs(segments[0], "m"), LARGE)
     automatic = [{"segmentation": s, "area": 1, "predicted_iou": 0.9} for s in segments]
     np.testing.assert_array_equal(found(Source(json.dumps(automatic).encode(), "m.json")), IDS)
     with pytest.raises(InputError, match="run lengths"):
-        decoded_runs({"size": [4, 4], "counts": [3, 2]}, "m")
+        decode_runs({"size": [4, 4], "counts": [3, 2]}, "m")
 
 
 POLYGON = [[10, 10], [89, 10], [89, 79], [10, 79]]
@@ -332,7 +332,7 @@ def test_forms_and_refusals() -> None:
         with pytest.raises(InputError, match="no mask"):
             found(given)
     with pytest.raises(InputError, match="different sizes"):
-        painted([np.ones((2, 2), bool), np.ones((3, 2), bool)], "m", "masks")
+        paint_masks([np.ones((2, 2), bool), np.ones((3, 2), bool)], "m", "masks")
     with pytest.raises(InputError, match="exact colours"):
         read_picture(Source(encoded(Image.fromarray(RGB), "JPEG"), "m.jpg"))
 
