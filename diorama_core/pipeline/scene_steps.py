@@ -219,7 +219,7 @@ def refined(
 
 def dressed(scene: Scene, look: PhotoAppearance, of_planes: Pictures) -> Scene:
     """The scene with the photo's materials, whose planes show the pictures that there are, by plane id."""
-    scene = look.applied(scene)
+    scene = look.apply(scene)
     planes = tuple(replace(p, texture=p.id if p.id in of_planes else None) for p in scene.architecture.planes)
     return replace(scene, architecture=replace(scene.architecture, planes=planes))
 
