@@ -16,7 +16,7 @@ import trimesh
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.appearance.rectify import Rectified, face_homography, is_cut, outline_px, rectify
-from diorama_core.architecture.texture.continuation import completed
+from diorama_core.architecture.texture.continuation import complete_texture
 from diorama_core.artefacts import SURE_MASK, DetectedObject
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.slots import Slot, rectangle_of, slots_of
@@ -311,7 +311,7 @@ def _complete_at_low_resolution(colours: Picture, seen: Bool[np.ndarray, "h w"],
     known = weight >= COMPLETION_SETTINGS.wholly
     usual = _usual(small, known)
     red, green, blue = (float(c) / 255.0 for c in np.median(small[usual], axis=0))
-    whole = completed(small, known, (red, green, blue), pixel_m / factor, usual, ground=True)
+    whole = complete_texture(small, known, (red, green, blue), pixel_m / factor, usual, ground=True)
     return cv2.resize(whole, (width, height), interpolation=cv2.INTER_LINEAR).astype(np.float32)
 
 

@@ -11,7 +11,7 @@ from jaxtyping import UInt8
 from diorama_core.appearance.photo_appearance import PhotoAppearance, photo_appearance
 from diorama_core.architecture.room_extent import containing_room, without_floor_behind_walls
 from diorama_core.architecture.texture.plane_textures import plane_textures
-from diorama_core.architecture.texture.refit import refitted_textures
+from diorama_core.architecture.texture.refit import refit_textures
 from diorama_core.arrangement.explain import SCALE, reasons_of_change
 from diorama_core.arrangement.support_hypotheses import (
     MEASURED,
@@ -240,7 +240,7 @@ def finished(
     scene, textures = dressed(scene, look, of_planes), dict(of_planes)
     if room.architecture.floor is not None:
         trimmed = without_floor_behind_walls(scene, room.architecture.floor)
-        scene, cut = refitted_textures(scene, trimmed, textures)
+        scene, cut = refit_textures(scene, trimmed, textures)
         textures |= cut
     return FinishedScene(_rescale_to_height(scene, inputs.camera_height_m), textures | dict(look.pictures))
 
