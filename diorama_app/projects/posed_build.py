@@ -21,7 +21,7 @@ from diorama_core.io.atomic import write_atomically
 from diorama_core.layout.recipes import recipe
 from diorama_core.multiview.camera_changes import quarters_of, upright_camera
 from diorama_core.multiview.found_poses import UnposedPhoto, find_poses
-from diorama_core.multiview.lens import straightened
+from diorama_core.multiview.lens import undistort
 from diorama_core.multiview.posed_photos import PosedPhoto, Poses
 from diorama_core.multiview.rooms import JoinedRoom, PosedInputs, align_to_room, build_room
 from diorama_core.multiview.sphere_scene import build_sphere
@@ -196,14 +196,14 @@ def _pose(photo: FolderPhoto, inputs: Inputs, posed: PosedPhoto, *, stored: bool
     lies = abs(k.height / k.width * height / width - 1.0) <= MAX_ASPECT_OFF and abs(k.width / k.height - 1.0) > 0.01
     if (quarters % 2 and lies) or (quarters == 2 and stored):
         posed = replace(posed, camera=upright_camera(posed.camera, quarters))
-        lens = lens.turned(quarters)
+        lens = lens.rotate(quarters)
     k = posed.camera.intrinsics
     if abs(k.width / k.height * height / width - 1.0) > MAX_ASPECT_OFF:
         raise InputError(
             f"{photo.photo.name} has {width} x {height} pixels, its camera {k.width} x {k.height}: another picture?"
         )
     camera = Camera(k.resize(width, height), posed.camera.T_world_camera)
-    straight = straightened(inputs, camera.intrinsics, lens)
+    straight = undistort(inputs, camera.intrinsics, lens)
     return PosedInputs(replace(straight, intrinsics=camera.intrinsics), camera)
 
 

@@ -74,7 +74,7 @@ def read_packed(upload: Upload) -> tuple[bytes, tuple[str, ...]] | DepthQuestion
 
 
 def _read(upload: Upload) -> ReadInputs:
-    from diorama_core.multiview.plumb_lines import straightened_by_lines  # in the decoding process only
+    from diorama_core.multiview.plumb_lines import undistort_by_lines  # in the decoding process only
 
     read = read_inputs(
         upload.photo,
@@ -91,5 +91,5 @@ def _read(upload: Upload) -> ReadInputs:
     )
     if upload.sphere:
         return read
-    inputs, notes = straightened_by_lines(read.inputs, upload.bend)
+    inputs, notes = undistort_by_lines(read.inputs, upload.bend)
     return ReadInputs(inputs, read.warnings if upload.bend is not None else (*notes, *read.warnings))

@@ -21,8 +21,8 @@ def refit(before: Scene, after: Scene, textures: Textures) -> tuple[Scene, Textu
         return after, {}
     # OpenCV; opening a project does without it
     from diorama_core.appearance.surface_finish import with_finish_pictures
-    from diorama_core.architecture.texture.refit import refitted_textures
+    from diorama_core.architecture.texture.refit import refit_textures
 
-    after, made = refitted_textures(before, after, textures)
+    after, made = refit_textures(before, after, textures)
     after, finishes = with_finish_pictures(after, {**textures, **made})
     return after, {**made, **finishes}

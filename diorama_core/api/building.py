@@ -208,10 +208,10 @@ def _compose(
 def _straight(inputs: Inputs, distortion: Sequence[float]) -> tuple[Inputs, tuple[str, ...]]:
     """The inputs without the distortion that is given, or that the photo's own lines tell; and what was done."""
     from diorama_core.multiview.lens import lens_of, without_distortion
-    from diorama_core.multiview.plumb_lines import straightened_by_lines
+    from diorama_core.multiview.plumb_lines import undistort_by_lines
 
     if not distortion:
-        straight, notes = straightened_by_lines(inputs)
+        straight, notes = undistort_by_lines(inputs)
         return straight, tuple(f"{note}: --distortion 0 leaves it as it is" for note in notes)
     lens = lens_of(distortion)
     return (without_distortion(inputs, lens) if lens.bends else inputs), ()

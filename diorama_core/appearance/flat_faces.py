@@ -15,8 +15,8 @@ import numpy as np
 import trimesh
 from jaxtyping import Bool, Float, Float32, UInt8
 
-from diorama_core.appearance.rectify import Rectified, face_homography, is_cut, outline_px, rectified
-from diorama_core.architecture.texture.continuation import completed
+from diorama_core.appearance.rectify import Rectified, face_homography, is_cut, outline_px, rectify
+from diorama_core.architecture.texture.continuation import complete_texture
 from diorama_core.artefacts import SURE_MASK, DetectedObject
 from diorama_core.geometry.projection import box_iou
 from diorama_core.library.slots import Slot, rectangle_of, slots_of
@@ -152,7 +152,7 @@ def _face(
         H = box_alignment(_outline_box(item, parts, camera), detected.box, sides_told(detected.box, others)) @ H
     if _share_in_mask(outline_px(H), others, detected) < SETTINGS.min_in_mask:
         return None
-    picture = rectified(rgb, unseen, H)
+    picture = rectify(rgb, unseen, H)
     if picture is None or picture.seen.mean() < SETTINGS.min_seen:
         return None
     roughness = ROUGHNESS.get(slot.role, SETTINGS.other_roughness)
@@ -162,7 +162,7 @@ def _face(
             slot, layout, np.broadcast_to(dark, (SETTINGS.dark_side_px, SETTINGS.dark_side_px, 3)).copy(), roughness
         )
     pixel_m = float(np.linalg.norm(rectangle.across * item.pose.scale)) / picture.seen.shape[1]
-    return FlatFace(slot, layout, completed_picture(picture, pixel_m), roughness)
+    return FlatFace(slot, layout, complete_picture(picture, pixel_m), roughness)
 
 
 def _pixels_outside_box(detected: DetectedObject) -> Bool[np.ndarray, "h w"]:
@@ -279,7 +279,7 @@ class CompletionSettings:
 COMPLETION_SETTINGS = CompletionSettings()
 
 
-def completed_picture(rectified: Rectified, pixel_m: float) -> UInt8[np.ndarray, "h w 3"]:
+def complete_picture(rectified: Rectified, pixel_m: float) -> UInt8[np.ndarray, "h w 3"]:
     """The whole picture.
 
     Args:
@@ -290,16 +290,16 @@ def completed_picture(rectified: Rectified, pixel_m: float) -> UInt8[np.ndarray,
     seen = cv2.erode(rectified.seen.astype(np.uint8), np.ones((2 * rim + 1,) * 2, np.uint8), borderValue=1).astype(bool)
     if not seen.any():
         seen = rectified.seen
-    colours, seen = mirrored(rectified.colours, seen)
+    colours, seen = fill_from_mirror_images(rectified.colours, seen)
     if seen.all():
         return colours.clip(0, 255).astype(np.uint8)
-    behind = _continued(colours, seen, pixel_m)
+    behind = _complete_at_low_resolution(colours, seen, pixel_m)
     share = cv2.GaussianBlur(cv2.erode(seen.astype(np.float32), np.ones((3, 3))), (0, 0), 1.5)[..., None]
     mixed = share * seen[..., None]
     return (mixed * colours + (1.0 - mixed) * behind).clip(0, 255).astype(np.uint8)
 
 
-def _continued(colours: Picture, seen: Bool[np.ndarray, "h w"], pixel_m: float) -> Picture:
+def _complete_at_low_resolution(colours: Picture, seen: Bool[np.ndarray, "h w"], pixel_m: float) -> Picture:
     """The picture completed at a reduced size: what nobody saw needs no more than its material and its shade."""
     height, width = seen.shape
     factor = min(1.0, COMPLETION_SETTINGS.completed_side_px / max(height, width))
@@ -311,7 +311,7 @@ def _continued(colours: Picture, seen: Bool[np.ndarray, "h w"], pixel_m: float) 
     known = weight >= COMPLETION_SETTINGS.wholly
     usual = _usual(small, known)
     red, green, blue = (float(c) / 255.0 for c in np.median(small[usual], axis=0))
-    whole = completed(small, known, (red, green, blue), pixel_m / factor, usual, ground=True)
+    whole = complete_texture(small, known, (red, green, blue), pixel_m / factor, usual, ground=True)
     return cv2.resize(whole, (width, height), interpolation=cv2.INTER_LINEAR).astype(np.float32)
 
 
@@ -322,15 +322,15 @@ def _usual(colours: Picture, known: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray,
     return np.asarray(known & (difference <= max(COMPLETION_SETTINGS.much_more * most, COMPLETION_SETTINGS.max_levels)))
 
 
-def mirrored(colours: Picture, seen: Bool[np.ndarray, "h w"]) -> tuple[Picture, Bool[np.ndarray, "h w"]]:
-    """What is hidden filled in from mirror images of the picture that it is alike."""
+def fill_from_mirror_images(colours: Picture, seen: Bool[np.ndarray, "h w"]) -> tuple[Picture, Bool[np.ndarray, "h w"]]:
+    """Fill in what is hidden from mirror images of the picture that it is alike."""
     smooth = None
     for mirror in MIRRORS:
         other, is_seen = mirror(colours), mirror(seen)
         both = seen & is_seen
         if not (is_seen & ~seen).any() or both.mean() < COMPLETION_SETTINGS.min_overlap:
             continue
-        smooth = _smoothed(colours) if smooth is None else smooth
+        smooth = _smooth(colours) if smooth is None else smooth
         if not _alike(smooth[both], mirror(smooth)[both]):
             continue
         gained = is_seen & ~seen
@@ -341,7 +341,7 @@ def mirrored(colours: Picture, seen: Bool[np.ndarray, "h w"]) -> tuple[Picture, 
     return colours, seen
 
 
-def _smoothed(colours: Picture) -> Picture:
+def _smooth(colours: Picture) -> Picture:
     return cv2.GaussianBlur(colours, (0, 0), max(1.0, 0.01 * max(colours.shape)))
 
 

@@ -52,7 +52,7 @@ class Shade:
     weight: Float[np.ndarray, "n"]
 
 
-def estimated_light(
+def estimate_light(
     shades: Sequence[Shade], walls: Shade | None = None, to_window: Float[np.ndarray, "3"] | None = None
 ) -> RoomLight:
     """The light that explains all materials' shades best; the usual one where nothing is known.

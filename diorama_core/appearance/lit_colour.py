@@ -34,7 +34,9 @@ class LitColourSettings:
 SETTINGS = LitColourSettings()
 
 
-def unveiled(colour: Float[np.ndarray, "3"], others: Sequence[Float[np.ndarray, "3"]]) -> Float[np.ndarray, "3"]:
+def select_material_colour(
+    colour: Float[np.ndarray, "3"], others: Sequence[Float[np.ndarray, "3"]]
+) -> Float[np.ndarray, "3"]:
     """The colour of a material that shows in one colour and in others (CIELAB).
 
     Args:

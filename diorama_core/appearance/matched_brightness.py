@@ -60,7 +60,7 @@ def brightness_gains(
     return gains
 
 
-def brightened(
+def brighten(
     materials: Materials, pictures: Pictures, gains: Mapping[str, float], sets: Sequence[Sequence[str]]
 ) -> tuple[dict[str, tuple[PhotoMaterial, ...]], dict[str, UInt8[np.ndarray, "_ _ 3"]]]:
     """Materials and pictures made brighter; things of a set keep the materials that they share.
@@ -71,14 +71,14 @@ def brightened(
         gains: By object id; an object without one stays.
         sets: Ids of things that share materials.
     """
-    shared = _shared_gains(materials, gains, sets)
+    shared = _equalise_gains(materials, gains, sets)
     made: dict[str, tuple[PhotoMaterial, ...]] = {}
     textures: dict[str, UInt8[np.ndarray, "_ _ 3"]] = {}
     for object_id, object_materials in materials.items():
         gain = shared[object_id]
         names: dict[str | None, str] = {}
         for name in sorted({m.texture for m in object_materials if m.texture is not None and m.texture in pictures}):
-            lit = _lit(pictures[name], gain)
+            lit = _brighten_picture(pictures[name], gain)
             names[name] = _name_of(name, lit)
             textures[names[name]] = lit
         made[object_id] = tuple(
@@ -88,7 +88,9 @@ def brightened(
     return made, textures
 
 
-def _shared_gains(materials: Materials, gains: Mapping[str, float], sets: Sequence[Sequence[str]]) -> dict[str, float]:
+def _equalise_gains(
+    materials: Materials, gains: Mapping[str, float], sets: Sequence[Sequence[str]]
+) -> dict[str, float]:
     """One gain for every object that no material of it makes brighter than surfaces are, the same for a set."""
     room = {i: min((_headroom(m) for m in object_materials), default=1.0) for i, object_materials in materials.items()}
     shared = {i: min(gains.get(i, 1.0), room[i]) for i in materials}
@@ -111,18 +113,18 @@ def _headroom(material: PhotoMaterial) -> float:
     return max(1.0, MAX_LINEAR / max(brightest, DARKEST))
 
 
-def _lit(texture: UInt8[np.ndarray, "h w 3"], gain: float) -> UInt8[np.ndarray, "h w 3"]:
-    return texture if gain == 1.0 else np.rint(255.0 * _scaled(texture / 255.0, gain)).astype(np.uint8)
+def _brighten_picture(texture: UInt8[np.ndarray, "h w 3"], gain: float) -> UInt8[np.ndarray, "h w 3"]:
+    return texture if gain == 1.0 else np.rint(255.0 * _apply_gain(texture / 255.0, gain)).astype(np.uint8)
 
 
 def _brighter(colour: tuple[float, float, float], gain: float) -> tuple[float, float, float]:
     if gain == 1.0:
         return colour
-    red, green, blue = (float(c) for c in _scaled(np.asarray(colour, dtype=np.float64), gain))
+    red, green, blue = (float(c) for c in _apply_gain(np.asarray(colour, dtype=np.float64), gain))
     return red, green, blue
 
 
-def _scaled(display: np.ndarray, gain: float) -> np.ndarray:
+def _apply_gain(display: np.ndarray, gain: float) -> np.ndarray:
     return np.asarray(linear_to_srgb(np.clip(gain * srgb_to_linear(display), 0.0, 1.0)))
 
 

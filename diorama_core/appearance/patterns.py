@@ -48,7 +48,7 @@ class Swatch:
         small = self.rng.normal(0.0, 0.5, size).astype(np.float32)
         return cv2.resize(small, (self.width, self.height), interpolation=cv2.INTER_CUBIC)
 
-    def shaded(self, tone: Float[np.ndarray, "h w"]) -> Picture:
+    def shade(self, tone: Float[np.ndarray, "h w"]) -> Picture:
         """The colour made brighter by a share of itself, texel by texel."""
         return np.broadcast_to(self.colour, (self.height, self.width, 3)) * (1 + tone)[..., None]
 
@@ -64,7 +64,7 @@ def planks(swatch: Swatch) -> Picture:
     tone = swatch.rng.normal(0.0, 0.075, (row.max() + 1, number.max() + 2))[row, number]
     grain = 0.05 * swatch.noise((0.008 * s, 0.5 * s)) + 0.04 * swatch.noise((0.02 * s, 0.25 * s))
     seam = (np.minimum(y % board, board - y % board) < 0.9) | (((x + shift) % long) < 1.5)
-    return swatch.shaded(tone + grain - 0.35 * seam)
+    return swatch.shade(tone + grain - 0.35 * seam)
 
 
 def parquet(swatch: Swatch) -> Picture:
@@ -78,7 +78,7 @@ def parquet(swatch: Swatch) -> Picture:
     tone = swatch.rng.normal(0.0, 0.09, (i.max() + 1, j.max() + 1, 6))[i, j, np.minimum(strip, 5)]
     seam = (np.where(across, y % block, x % block) % (block / 5)) < 1.0
     grain = 0.05 * np.where(across, swatch.noise((0.006 * s, 0.2 * s)), swatch.noise((0.2 * s, 0.006 * s)))
-    return swatch.shaded(tone + grain - 0.25 * seam)
+    return swatch.shade(tone + grain - 0.25 * seam)
 
 
 def tiles(swatch: Swatch) -> Picture:
@@ -92,7 +92,7 @@ def tiles(swatch: Swatch) -> Picture:
     j = ((x + offset) // wide).astype(int)
     tone = swatch.rng.normal(0.0, 0.03, (i.max() + 1, j.max() + 2))[i, j] + 0.03 * swatch.noise((0.06 * s, 0.06 * s))
     joint = ((y % tall) < 1.6) | (((x + offset) % wide) < 1.6)
-    picture = swatch.shaded(tone)
+    picture = swatch.shade(tone)
     picture[joint] = np.array([0.62, 0.61, 0.59]) if swatch.colour.mean() > 0.5 else np.array([0.55, 0.54, 0.52])
     return picture
 
@@ -113,14 +113,14 @@ def carpet(swatch: Swatch) -> Picture:
     """Woven pile."""
     s = swatch.texels_per_m
     fine = swatch.rng.normal(0.0, 0.06, (swatch.height, swatch.width))
-    return swatch.shaded(fine + 0.04 * swatch.noise((0.3 * s, 0.3 * s)))
+    return swatch.shade(fine + 0.04 * swatch.noise((0.3 * s, 0.3 * s)))
 
 
 def paint(swatch: Swatch) -> Picture:
     """Painted plaster, on walls above a skirting board."""
     s = swatch.texels_per_m
     tone = 0.012 * swatch.noise((0.5 * s, 0.5 * s)) + swatch.rng.normal(0.0, 0.008, (swatch.height, swatch.width))
-    return with_skirting(swatch.shaded(tone), s, swatch.role)
+    return with_skirting(swatch.shade(tone), s, swatch.role)
 
 
 def paper(swatch: Swatch) -> Picture:
@@ -134,7 +134,7 @@ def paper(swatch: Swatch) -> Picture:
         centred = ((x + (y // period % 2) * period / 2) % period - period / 2, y % period - period / 2)
         figure = np.hypot(*centred) < 0.22 * period
     ink = swatch.colour * float(swatch.rng.uniform(0.82, 0.9))
-    return with_skirting(_printed(swatch, figure, ink), s, swatch.role)
+    return with_skirting(_print_figure(swatch, figure, ink), s, swatch.role)
 
 
 def brick(swatch: Swatch) -> Picture:
@@ -146,12 +146,12 @@ def brick(swatch: Swatch) -> Picture:
     shifted = x + (i % 2) * wide / 2
     j = (shifted // wide).astype(int)
     tone = swatch.rng.normal(0.0, 0.1, (i.max() + 1, j.max() + 2))[i, j] + 0.06 * swatch.noise((0.03 * s, 0.03 * s))
-    picture = swatch.shaded(tone)
+    picture = swatch.shade(tone)
     picture[((y % tall) < 0.012 * s) | ((shifted % wide) < 0.012 * s)] = (0.76, 0.73, 0.69)
     return picture
 
 
-def panelled(swatch: Swatch) -> Picture:
+def panelling(swatch: Swatch) -> Picture:
     """Paint above boards of one metre."""
     s = swatch.texels_per_m
     picture = paint(replace(swatch, colour=np.minimum(swatch.colour * 1.05, 0.95)))
@@ -177,7 +177,7 @@ def plaster(swatch: Swatch) -> Picture:
     """Lime plaster or bare concrete, in clouds."""
     s = swatch.texels_per_m
     clouds = sum(0.03 * 0.6**k * swatch.noise((0.5 * 0.5**k * s, 0.7 * 0.5**k * s)) for k in range(4))
-    return swatch.shaded(np.asarray(clouds) + swatch.rng.normal(0.0, 0.008, (swatch.height, swatch.width)))
+    return swatch.shade(np.asarray(clouds) + swatch.rng.normal(0.0, 0.008, (swatch.height, swatch.width)))
 
 
 def stripes(swatch: Swatch) -> Picture:
@@ -186,26 +186,26 @@ def stripes(swatch: Swatch) -> Picture:
     _, x = swatch.grid()
     band = 0.08 * s
     edge = np.clip(0.5 + band * np.sin(np.pi * x / band) / np.pi, 0.0, 1.0)
-    return _printed(swatch, edge)
+    return _print_figure(swatch, edge)
 
 
 def dots(swatch: Swatch) -> Picture:
     """Wallpaper of dots."""
     s = swatch.texels_per_m
-    dx, dy, _, _ = _staggered(swatch, 0.11 * s)
-    return _printed(swatch, np.clip(0.5 + 0.02 * s - np.hypot(dx, dy), 0.0, 1.0))
+    dx, dy, _, _ = _stagger_cells(swatch, 0.11 * s)
+    return _print_figure(swatch, np.clip(0.5 + 0.02 * s - np.hypot(dx, dy), 0.0, 1.0))
 
 
 def leaves(swatch: Swatch) -> Picture:
     """Wallpaper of leaves that lean left and right by turns."""
     s = swatch.texels_per_m
-    dx, dy, row, column = _staggered(swatch, 0.1 * s)
+    dx, dy, row, column = _stagger_cells(swatch, 0.1 * s)
     lean = np.where((row + column) % 2 == 0, 0.6, -0.6)
     along, across = dx * np.sin(lean) + dy * np.cos(lean), dx * np.cos(lean) - dy * np.sin(lean)
     long, wide = 0.052 * s, 0.016 * s
     inside = wide * (1.0 - (along / long) ** 2) - np.abs(across)
     vein = (np.abs(across) < 0.0012 * s) & (along > -0.7 * long)
-    return _printed(swatch, np.clip(0.5 + inside, 0.0, 1.0) * ~vein)
+    return _print_figure(swatch, np.clip(0.5 + inside, 0.0, 1.0) * ~vein)
 
 
 def herringbone(swatch: Swatch) -> Picture:
@@ -226,10 +226,10 @@ def herringbone(swatch: Swatch) -> Picture:
     end = np.where(lying, px, py)
     edge = np.where(along == 0, np.minimum(edge, end), edge)
     edge = np.where(along == ratio - 1, np.minimum(edge, wide - end), edge)
-    return swatch.shaded(tone + 0.05 * grain - 0.35 * np.clip(1.3 - edge, 0.0, 1.0))
+    return swatch.shade(tone + 0.05 * grain - 0.35 * np.clip(1.3 - edge, 0.0, 1.0))
 
 
-def _staggered(swatch: Swatch, period: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _stagger_cells(swatch: Swatch, period: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Texels from the middle of the nearest cell to the right and down, and the cell's row and column."""
     y, x = swatch.grid()
     row = np.floor(y / period).astype(int)
@@ -238,7 +238,7 @@ def _staggered(swatch: Swatch, period: float) -> tuple[np.ndarray, np.ndarray, n
     return shifted - (column + 0.5) * period, y - (row + 0.5) * period, row, column
 
 
-def _printed(swatch: Swatch, figure: np.ndarray, ink: Float[np.ndarray, "3"] | None = None) -> Picture:
+def _print_figure(swatch: Swatch, figure: np.ndarray, ink: Float[np.ndarray, "3"] | None = None) -> Picture:
     """Paper with a figure, a share of ink for each texel; a darker shade of the paper's colour by default."""
     ink = swatch.colour * 0.84 if ink is None else ink
     noise = swatch.rng.normal(0.0, 0.006, (swatch.height, swatch.width, 1))

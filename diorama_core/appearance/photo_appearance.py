@@ -14,10 +14,10 @@ from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.appearance.flat_faces import FlatFace, faces_of
 from diorama_core.appearance.irradiance import irradiance_map
-from diorama_core.appearance.light import SHINING, estimated_light
-from diorama_core.appearance.matched_brightness import brightened, brightness_gains
+from diorama_core.appearance.light import SHINING, estimate_light
+from diorama_core.appearance.matched_brightness import brighten, brightness_gains
 from diorama_core.appearance.room_cues import SETTINGS, wall_shade, window_direction
-from diorama_core.appearance.sets import shared_materials
+from diorama_core.appearance.sets import share_materials
 from diorama_core.appearance.surface_materials import (
     ROUGHNESS,
     SlotPixels,
@@ -49,7 +49,7 @@ class PhotoAppearance:
     light: RoomLight | None = None
     """What the shades of the objects say of the room's light; None without a camera."""
 
-    def applied(self, scene: Scene) -> Scene:
+    def apply(self, scene: Scene) -> Scene:
         """The scene with objects that show the photo's materials, in the photo's light."""
         objects = tuple(replace(o, photo_materials=self.materials.get(o.id, o.photo_materials)) for o in scene.objects)
         return replace(scene, objects=objects, light=self.light or scene.light)
@@ -88,12 +88,12 @@ def photo_appearance(
     detected_by_id = {o.id: o for o in objects}
     camera = scene.camera
     seen = map_threads(
-        lambda item: _seen(item, _parts(library, item), rgb, detected_by_id[item.id], objects, camera),
+        lambda item: _observe(item, _parts(library, item), rgb, detected_by_id[item.id], objects, camera),
         [item for item in scene.objects if item.id in detected_by_id],
     )
     shades = [shade_of(s.view, p, rgb) for s in seen if s.view is not None for p in s.pixels]
     walls, window = wall_shade(rgb, objects, scene), window_direction(rgb, objects, scene)
-    light = estimated_light(shades, walls, window)
+    light = estimate_light(shades, walls, window)
     red, green, blue = (float(c) / max(illuminant_rgb) for c in illuminant_rgb)
     light = replace(light, colour=(red, green, blue))
     falls = irradiance_map(replace(scene, light=light), scene.camera, library)
@@ -104,7 +104,7 @@ def photo_appearance(
         made = [(_face_material(one.item, face), face.picture) for face in one.faces] + of_slots
         materials[one.item.id] = tuple(material for material, _ in made)
         pictures |= {m.texture: picture for m, picture in made if m.texture is not None and picture is not None}
-    materials = shared_materials(
+    materials = share_materials(
         materials,
         _sets(scene),
         {
@@ -139,8 +139,8 @@ def _as_bright(
     """
     visible = {key: pixels for key, pixels in read_from.items() if key in read.materials}
     for _ in range(SETTINGS.brightness_rounds):
-        gains = brightness_gains(rgb, visible, read.applied(scene), read.pictures, library)
-        materials, pictures = brightened(read.materials, read.pictures, gains, _sets(scene))
+        gains = brightness_gains(rgb, visible, read.apply(scene), read.pictures, library)
+        materials, pictures = brighten(read.materials, read.pictures, gains, _sets(scene))
         read = replace(read, materials=materials, pictures=pictures)
     return read
 
@@ -179,7 +179,7 @@ def _parts(library: ShapeLibrary, item: SceneObject) -> trimesh.Scene:
     return stretch_parts(library.parts(item.shape_id), relative_scale(item.pose.scale))
 
 
-def _seen(
+def _observe(
     item: SceneObject,
     parts: trimesh.Scene,
     rgb: UInt8[np.ndarray, "h w 3"],

@@ -71,7 +71,7 @@ def is_cut(H: Float[np.ndarray, "3 3"]) -> bool:
     return bool((UNIT_SQUARE @ H[2] < NEAR_M).any())
 
 
-def rectified(
+def rectify(
     rgb: UInt8[np.ndarray, "h w 3"], hidden: Bool[np.ndarray, "h w"], H: Float[np.ndarray, "3 3"]
 ) -> Rectified | None:
     """A rectangle that the photo shows; None where it is too small to show anything.

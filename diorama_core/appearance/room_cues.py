@@ -63,7 +63,7 @@ def wall_shade(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject
     height, width = rgb.shape[:2]
     x, y = np.meshgrid(np.arange(0, width, SETTINGS.step_px), np.arange(0, height, SETTINGS.step_px))
     which = _plane_seen(scene.architecture, scene.camera, np.stack([x, y], axis=-1) + 0.5)
-    free = ~_covered(objects, (height, width))[y, x]
+    free = ~_object_mask(objects, (height, width))[y, x]
     linear = srgb_to_linear(rgb[y, x] / 255.0)
     seen = {w.id: linear[free & (which == _index(scene.architecture, w))] for w in walls}
     medians = {w.id: np.median(seen[w.id], axis=0) for w in walls if len(seen[w.id]) >= SETTINGS.min_cells}
@@ -130,7 +130,7 @@ def _plane_seen(room: Architecture, camera: Camera, pixels: Float[np.ndarray, "h
     return which
 
 
-def _covered(objects: Sequence[DetectedObject], size: tuple[int, int]) -> Bool[np.ndarray, "h w"]:
+def _object_mask(objects: Sequence[DetectedObject], size: tuple[int, int]) -> Bool[np.ndarray, "h w"]:
     covered = np.zeros(size, np.uint8)
     for item in objects:
         covered |= item.mask.astype(np.uint8)

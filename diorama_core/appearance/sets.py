@@ -43,7 +43,7 @@ def leaders(
     return {**dict.fromkeys(members, leading[0]), **follows} if leading else {}
 
 
-def shared_materials(
+def share_materials(
     materials: Mapping[str, tuple[PhotoMaterial, ...]],
     sets: Sequence[Sequence[str]],
     seen: Mapping[tuple[str, str], float],

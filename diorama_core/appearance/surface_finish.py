@@ -59,7 +59,7 @@ KINDS: dict[SurfacePattern, PatternKind] = {
         ("sage", "white", "cream", "sky", "blush", "clay", "ochre", "grey", "blue", "moss"),
         skirted=True,
     ),
-    "panelling": PatternKind("Panelling", patterns.panelled, ("white", "sage", "grey", "blue"), directed=False),
+    "panelling": PatternKind("Panelling", patterns.panelling, ("white", "sage", "grey", "blue"), directed=False),
     "tiles": PatternKind("Tiles", patterns.tiles, STONES),
     "metro": PatternKind("Metro tiles", patterns.tiles, ("white", "sky", "sage", "slate", "blue"), role="wall"),
     "checker": PatternKind("Chequered", patterns.checker, ("slate", "terracotta", "moss", "blue")),

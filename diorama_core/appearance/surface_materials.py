@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.appearance.light import Shade
-from diorama_core.appearance.lit_colour import is_shade, unveiled
+from diorama_core.appearance.lit_colour import is_shade, select_material_colour
 from diorama_core.appearance.plainness import shows_plain
 from diorama_core.appearance.surface_view import SurfaceView
 from diorama_core.appearance.texture_example import Example, best_example, tileable
@@ -212,7 +212,9 @@ def _own_colours(
         main = options[index][chosen]
         as_good = [k for k, score in enumerate(colours) if score >= SETTINGS.as_good * colours[chosen]]
         much = [options[index][k] for k in as_good if shares[k] >= SETTINGS.min_outlined]
-        seeds[index] = unveiled(main, [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s)])
+        seeds[index] = select_material_colour(
+            main, [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s)]
+        )
     return seeds
 
 

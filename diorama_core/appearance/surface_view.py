@@ -58,7 +58,7 @@ def surface_view(
     most = 90_000  # pixels; of larger objects every second, third ... is looked at
     step = max(1, int(np.ceil(np.sqrt((bottom - top) * (right - left) / most))))
     x, y = np.meshgrid(np.arange(left, right, step) + 0.5, np.arange(top, bottom, step) + 0.5)
-    vertices, faces, uv, owner = _joined(with_own_corners(parts, slots), slots)
+    vertices, faces, uv, owner = _concatenate_parts(with_own_corners(parts, slots), slots)
     world = pose.apply(vertices).astype(np.float32)
     rays = PinholeView(camera).rays(np.stack([x, y], axis=-1))
     hits = RayScene(world, faces).first_hits(rays)
@@ -74,7 +74,7 @@ def surface_view(
     return SurfaceView(left, top, step, slot, uv_m, normals, cosine)
 
 
-def _joined(
+def _concatenate_parts(
     parts: trimesh.Scene, slots: tuple[Slot, ...]
 ) -> tuple[Float[np.ndarray, "n 3"], Int32[np.ndarray, "m 3"], Float32[np.ndarray, "n 2"], Int8[np.ndarray, "m"]]:
     """Vertices, faces, texture coordinates in metres, and the slot of every face."""

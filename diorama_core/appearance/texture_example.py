@@ -182,11 +182,11 @@ def tileable(example: Example) -> UInt8[np.ndarray, "m m 3"]:
     mean = example.colours.reshape(-1, 3).mean(axis=0)
     detail = detail_continued((canvas - mean) * known[..., None], known, SETTINGS.strongest)
     if detail is None:
-        detail = _mirrored(example.colours) - mean
+        detail = _tile_mirror_images(example.colours) - mean
     return (mean + detail).clip(0, 255).astype(np.uint8)
 
 
-def _mirrored(colours: Float32[np.ndarray, "n n 3"]) -> Float32[np.ndarray, "m m 3"]:
+def _tile_mirror_images(colours: Float32[np.ndarray, "n n 3"]) -> Float32[np.ndarray, "m m 3"]:
     """A piece too small to be quilted, beside its mirror images."""
     row = np.concatenate([colours, colours[:, ::-1]], axis=1)
     return np.concatenate([row, row[::-1]], axis=0)

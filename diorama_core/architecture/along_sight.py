@@ -27,10 +27,10 @@ CLEAR_OF_WALL_M = 0.05
 
 def snap_mounted_objects(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
     """Objects with those mounted on a wall or the ceiling moved to touch it."""
-    return mounted_on_ceiling(mounted_on_walls(geometry, room), room)
+    return snap_to_ceiling(snap_to_walls(geometry, room), room)
 
 
-def mounted_on_ceiling(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
+def snap_to_ceiling(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
     """Objects with those mounted on the ceiling moved to touch it.
 
     A cuboid is scaled about the camera as far as the walls leave room; a cord bridges what is left.
@@ -42,13 +42,13 @@ def mounted_on_ceiling(geometry: ObjectGeometry, room: ArchitectureEstimate) -> 
     level = min(float(p.polygon[:, 2].mean()) for p in ceilings.values())
     walls = room.architecture.by_role("wall")
     cuboids = tuple(
-        _drawn_up(_raised(c, level, walls, geometry.camera), level) if c.object_id in attached else c
+        _extend_to_ceiling(_scale_to_ceiling(c, level, walls, geometry.camera), level) if c.object_id in attached else c
         for c in geometry.cuboids
     )
     return replace(geometry, cuboids=cuboids)
 
 
-def _raised(cuboid: Cuboid, level: float, walls: tuple[Plane, ...], camera: Camera) -> Cuboid:
+def _scale_to_ceiling(cuboid: Cuboid, level: float, walls: tuple[Plane, ...], camera: Camera) -> Cuboid:
     eye = camera.position
     top = float(cuboid.corners_world[:, 2].max() - eye[2])
     if top <= 1e-6 or level <= eye[2]:
@@ -71,14 +71,14 @@ def ahead_of(cuboid: Cuboid, wall: Plane, eye: Float[np.ndarray, "3"]) -> bool:
     return bool(ends.min() - half <= met @ along <= ends.max() + half)
 
 
-def _drawn_up(cuboid: Cuboid, level: float) -> Cuboid:
+def _extend_to_ceiling(cuboid: Cuboid, level: float) -> Cuboid:
     base, height = float(cuboid.corners_world[:, 2].min()), float(cuboid.size_m[2])
     drawn = float(np.clip(level - base, 0.5 * height, LONGEST_CORD * height))
     centre = np.array([*cuboid.centre[:2], base + drawn / 2])
     return replace(cuboid, centre=centre, size_m=np.array([*cuboid.size_m[:2], drawn]))
 
 
-def mounted_on_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
+def snap_to_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
     """Objects with those mounted on a wall moved to touch it.
 
     A cuboid is scaled about the camera, so that it looks the same in the photo, and ends at the floor.
@@ -87,13 +87,13 @@ def mounted_on_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> Ob
     wall_of = {s.child: planes[s.parent] for s in room.supports if s.relation == "mounted on" and s.parent in planes}
     most = MEASURED_SCALE if geometry.source.is_measured else np.inf
     cuboids = tuple(
-        _brought_to(c, wall_of[c.object_id], geometry.camera, most) if c.object_id in wall_of else c
+        _scale_to_wall(c, wall_of[c.object_id], geometry.camera, most) if c.object_id in wall_of else c
         for c in geometry.cuboids
     )
     return replace(geometry, cuboids=cuboids)
 
 
-def _brought_to(cuboid: Cuboid, wall: Plane, camera: Camera, most: float) -> Cuboid:
+def _scale_to_wall(cuboid: Cuboid, wall: Plane, camera: Camera, most: float) -> Cuboid:
     eye = camera.position
     nearest = float(((cuboid.corners_world - eye) @ wall.normal).min())
     if nearest > -1e-6:
@@ -121,7 +121,7 @@ REACH_M = 0.02
 """So far behind a wall is no contradiction."""
 
 
-def drawn_before_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
+def move_in_front_of_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
     """Objects with unseen feet brought before the walls, with what they carry.
 
     Args:
@@ -136,7 +136,7 @@ def drawn_before_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> 
         factor = nearer_by(unseen, walls, geometry.camera)
         if factor < 1.0:
             cuboids[unseen.object_id] = _down_to(_nearer(unseen, factor, geometry.camera), _base(unseen))
-            for child in _carried_by(unseen.object_id, room.supports):
+            for child in _descendants(unseen.object_id, room.supports):
                 if child in cuboids:
                     cuboids[child] = _nearer(cuboids[child], factor, geometry.camera)
     return replace(geometry, cuboids=tuple(cuboids[c.object_id] for c in geometry.cuboids))
@@ -153,10 +153,10 @@ def nearer_by(cuboid: Cuboid, walls: tuple[Plane, ...], camera: Camera) -> float
     return max(factor, MIN_SCALE)
 
 
-def _carried_by(parent: str, supports: tuple[Support, ...]) -> list[str]:
+def _descendants(parent: str, supports: tuple[Support, ...]) -> list[str]:
     """What an object carries, and what that carries."""
     carried = [s.child for s in supports if s.parent == parent]
-    return carried + [lower for child in carried for lower in _carried_by(child, supports)]
+    return carried + [lower for child in carried for lower in _descendants(child, supports)]
 
 
 def _nearer(cuboid: Cuboid, factor: float, camera: Camera) -> Cuboid:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from diorama_core.architecture.supports import resolve_supports
-from diorama_core.architecture.texture.colours import coloured, object_pixels
+from diorama_core.architecture.texture.colours import colour_planes, object_pixels
 from diorama_core.architecture.walls.ceilings import CeilingPiece, find_ceilings
 from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE, room_planes
 from diorama_core.architecture.walls.openings import WallOpening, counts, find_openings, is_shut
 from diorama_core.architecture.walls.passages import is_passage, with_passages
 from diorama_core.architecture.walls.settings import SETTINGS, WallSettings
-from diorama_core.architecture.walls.surface import MeasuredSurface, measured_surface
+from diorama_core.architecture.walls.surface import MeasuredSurface, measure_surface
 from diorama_core.architecture.walls.wall_candidates import find_walls, tolerance_m
 from diorama_core.architecture.walls.wall_path import heading
 from diorama_core.architecture.walls.wall_sequence import WallPiece, outline
@@ -52,17 +52,17 @@ class PlanarRoom:
         # A door shows where its wall is, also where nothing else of that is seen.
         solid = tuple(o for o in objects if not is_passage(o) and o.category != DOOR)
         hidden = object_pixels((inputs.photo.height, inputs.photo.width), solid)
-        surface = measured_surface(inputs.depth_m, geometry.camera, hidden, self.settings)
+        surface = measure_surface(inputs.depth_m, geometry.camera, hidden, self.settings)
         ceilings = find_ceilings(surface)
         top_m = _top(surface, ceilings, self.settings)
         walls = find_walls(surface, top_m)
         progress.report(0.6, "Closing the room at its corners")
         pieces = outline(surface, walls, view_headings(geometry.camera), top_m, self.settings)
-        pieces = pieces or (_guessed_wall(surface, geometry.camera),)
+        pieces = pieces or (_guess_wall(surface, geometry.camera),)
         floor_seen = _share(surface, 0.0, 1.0) > self.settings.min_flat_share
         openings: tuple[tuple[WallOpening, ...], ...] = ((),) * len(pieces)
         pointed: tuple[str, ...] = ()
-        if not _sloped(ceilings):
+        if not _has_slope(ceilings):
             measured = tuple(find_openings(surface, p, top_m, self.settings) for p in pieces)
             openings, pointed = with_passages(
                 measured,
@@ -75,7 +75,7 @@ class PlanarRoom:
             )
         sure = 0.95 if floor_seen else GUESS_CONFIDENCE
         planes = room_planes(pieces, ceilings, geometry.camera, top_m, sure, openings, self.settings)
-        planes = coloured(planes, inputs.photo.rgb, geometry.camera, objects)
+        planes = colour_planes(planes, inputs.photo.rgb, geometry.camera, objects)
         architecture = Architecture(planes)
         progress.report(1.0, "The room is closed")
         return ArchitectureEstimate(
@@ -115,7 +115,7 @@ def view_headings(camera: Camera) -> tuple[float, float]:
     return float(sides[0].min()), float(max(sides[1].max(), sides[0].min() + 0.1))
 
 
-def _guessed_wall(surface: MeasuredSurface, camera: Camera) -> WallPiece:
+def _guess_wall(surface: MeasuredSurface, camera: Camera) -> WallPiece:
     """A wall behind all measured points, perpendicular to the room axis that the camera faces."""
     origin = camera.position[:2]
     reach = surface.points[:, 1] - origin[1]
@@ -125,7 +125,7 @@ def _guessed_wall(surface: MeasuredSurface, camera: Camera) -> WallPiece:
     return WallPiece(np.array([origin[0] + span[0] - 0.3, y]), np.array([origin[0] + span[1] + 0.3, y]), None)
 
 
-def _sloped(ceilings: tuple[CeilingPiece, ...]) -> bool:
+def _has_slope(ceilings: tuple[CeilingPiece, ...]) -> bool:
     return any(not c.is_flat for c in ceilings)
 
 

@@ -74,11 +74,11 @@ def containing_room(
             scene = _without_far_adherence(scene)
     standing = [o for o in scene.objects if (edge := scene.support_of(o.id)) is not None and edge.parent == floor.id]
     if objects_measured:
-        scene = _doubted(scene, standing)
+        scene = _lower_wall_confidence(scene, standing)
     for wall in scene.architecture.by_role("wall"):
         if not wall.is_seen:
-            scene = _given_way(scene, wall.id, standing)
-        scene = _drawn_out(scene, wall.id)
+            scene = _move_wall_behind_objects(scene, wall.id, standing)
+        scene = _lengthen_wall(scene, wall.id)
     prints = [p for o in standing if len(p := _footprint(scene, o)) >= 3]
     return _with_ceiling(_with_floor_under(scene, prints))
 
@@ -168,7 +168,7 @@ def _fit_walls_to_backs(scene: Scene, feet_seen: Collection[str] | None, objects
         backs, certainty = _backs(against, wall, feet_seen)
         before, before_certainty = _backs(others, wall, feet_seen)
         tried = np.concatenate([[0.0], backs, before]) if objects_measured else np.concatenate([[0.0], backs])
-        inward = _agreed(tried, backs, certainty, before, before_certainty)
+        inward = _best_inward_shift(tried, backs, certainty, before, before_certainty)
         if abs(inward) < SETTINGS.margin_m:
             continue
         try:
@@ -182,11 +182,11 @@ def _fit_walls_to_backs(scene: Scene, feet_seen: Collection[str] | None, objects
 def _without_far_adherence(scene: Scene) -> Scene:
     """The scene without "against the wall" where an object was measured away from a wall that the photo shows."""
 
-    def touched_walls(edge: Support) -> tuple[str, ...]:
+    def contact_walls(edge: Support) -> tuple[str, ...]:
         item = scene.object(edge.child)
         return tuple(w for w in edge.adheres_to if abs(_back(item, scene.plane(w))) < SETTINGS.clearly_m)
 
-    return replace(scene, supports=tuple(replace(s, adheres_to=touched_walls(s)) for s in scene.supports))
+    return replace(scene, supports=tuple(replace(s, adheres_to=contact_walls(s)) for s in scene.supports))
 
 
 def _backs(
@@ -203,7 +203,7 @@ def _back(item: SceneObject, wall: Plane) -> float:
     return float((item.corners_world @ wall.normal).min()) - wall.offset
 
 
-def _agreed(
+def _best_inward_shift(
     tried: Float[np.ndarray, " t"],
     backs: Float[np.ndarray, " a"],
     certainty: Float[np.ndarray, " a"],
@@ -216,7 +216,7 @@ def _agreed(
     return float(tried[np.argmin(apart + past + SETTINGS.hold * np.abs(tried))])
 
 
-def _doubted(scene: Scene, standing: Sequence[SceneObject]) -> Scene:
+def _lower_wall_confidence(scene: Scene, standing: Sequence[SceneObject]) -> Scene:
     """The scene with walls as guesses behind which the middle of something that stands on the floor was measured.
 
     The front of furniture that nobody marked was taken for such a wall, or it ends before the object.
@@ -241,7 +241,7 @@ def _is_between_ends(item: SceneObject, wall: Plane) -> bool:
     return bool(spread.min() < float(item.pose.position @ along) < spread.max())
 
 
-def _given_way(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene:
+def _move_wall_behind_objects(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene:
     """The wall at the backs of what hangs on it, behind everything whose middle is in front of it; objects stay."""
     wall = scene.plane(wall_id)
     # Of what was seen, something hangs on the wall: it says where the wall is, within the room that it leaves.
@@ -261,7 +261,7 @@ def _hanging(scene: Scene, wall_id: str) -> list[SceneObject]:
     return [scene.object(s.child) for s in scene.supports if s.parent == wall_id and s.relation == "mounted on"]
 
 
-def _drawn_out(scene: Scene, wall_id: str) -> Scene:
+def _lengthen_wall(scene: Scene, wall_id: str) -> Scene:
     """The wall long enough for what hangs on it: an end is known only where it meets another wall that was seen."""
     wall = scene.plane(wall_id)
     hanging = _hanging(scene, wall_id)

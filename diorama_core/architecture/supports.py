@@ -23,11 +23,11 @@ def resolve_supports(geometry: ObjectGeometry, architecture: Architecture) -> tu
     """
     edges = {s.child: s for s in geometry.supports}
     return tuple(
-        _resolved(edges.get(c.object_id, Support(c.object_id, "floor")), c, architecture) for c in geometry.cuboids
+        _resolve(edges.get(c.object_id, Support(c.object_id, "floor")), c, architecture) for c in geometry.cuboids
     )
 
 
-def _resolved(edge: Support, cuboid: Cuboid, architecture: Architecture) -> Support:
+def _resolve(edge: Support, cuboid: Cuboid, architecture: Architecture) -> Support:
     walls, floor = architecture.by_role("wall"), architecture.floor
     ceilings = architecture.by_role("ceiling")
     if edge.parent == "ceiling" and ceilings:

@@ -13,7 +13,7 @@ from diorama_core.editing.plan_edits import draw_room
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import DOOR, wall_of
 from diorama_core.geometry.rooms import part_of_home, rooms_of_objects
-from diorama_core.multiview.one_scene import moved_to_room
+from diorama_core.multiview.one_scene import move_to_room
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.room_edits import floor_height
@@ -75,7 +75,7 @@ def join(
     T = place_at_door(home, other, door, other_door, wall_m=wall_m)
     wall, there = _wall_of_door(home, door), _wall_of_door(other, other_door)
     storeys = _storey(home, door) - _storey(other, other_door)
-    moved = moved_to_room(edits.remove(other, [other_door]), T)
+    moved = move_to_room(edits.remove(other, [other_door]), T)
     called = _new_names(home, moved)
     planes = tuple(_rename(p, called, wall_m if p.id == there.id else None) for p in moved.architecture.planes)
     textures = called.textures

@@ -21,7 +21,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN, resolve
 from diorama_core.multiview.adding import AddedPhoto, with_photo
 from diorama_core.multiview.camera_in_room import FoundCamera, MeasuredThing, camera_in_room
-from diorama_core.multiview.one_scene import moved_to_room
+from diorama_core.multiview.one_scene import move_to_room
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
@@ -58,7 +58,7 @@ def with_photo_of_scan(
         DioramaError: when a stage cannot do its work.
     """
     name = inputs.photo.name
-    scene = moved_to_room(opened.scene, _to_axes(opened.scene))
+    scene = move_to_room(opened.scene, _to_axes(opened.scene))
     artefacts = evaluate(
         choose(inputs), {"given": inputs}, ("inputs", "camera", "objects"), Runner(None), progress.part(0.0, 0.3)
     )

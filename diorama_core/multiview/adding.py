@@ -25,23 +25,23 @@ from diorama_core.multiview.joining import (
     Sighted,
     Track,
     claims,
-    fitted_track,
+    fit_track,
     overlap,
-    shown,
+    visibility_score,
     with_agreeing_boxes,
 )
 from diorama_core.multiview.joint_fit import JointCuboid
-from diorama_core.multiview.mounted_walls import hangs_on_wall, seen_whole, walls_at_mounted
-from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, moved_to_room
+from diorama_core.multiview.mounted_walls import hangs_on_wall, is_seen_whole, walls_at_mounted
+from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, move_to_room
 from diorama_core.multiview.room_pictures import room_pictures, with_pictures
 from diorama_core.multiview.rooms import (
     PosedInputs,
     ReadPhoto,
-    built_alone,
+    build_photo_scene,
+    estimate_room_photo,
     photo_world,
-    placed_picture,
     read_photo,
-    said_alone,
+    to_placed_picture,
     track_name,
 )
 from diorama_core.multiview.settings import SETTINGS
@@ -112,13 +112,15 @@ def with_photo(
     read = read_photo(PosedInputs(new.inputs, new.camera), choose(new.inputs), progress.part(0.0, 0.15))
     if not read.objects:
         raise InputError(f"nothing is marked in {new.name} and nothing was found; draw a box around each object first")
-    new_photo, others = said_alone(read), _known_photos(known, choose, progress.part(0.15, 0.3))
+    new_photo, others = estimate_room_photo(read), _read_known_photos(known, choose, progress.part(0.15, 0.3))
     sightings = {o.id: _boxes_of(o.id, others) for o in scene.objects}
     objects = [o for o in scene.objects if not o.hidden]
     boxes = [(name, box) for name, at in new.seen if (box := _same(at, read)) is not None]
     given = {box: o for o in objects for name, box in boxes if name == o.id}
     rest = [o for o in objects if o not in given.values()]
-    claimed = given | _claimed(rest, sightings, [photo for _, _, photo in others], new_photo, movable, set(given))
+    claimed = given | _match_boxes_to_objects(
+        rest, sightings, [photo for _, _, photo in others], new_photo, movable, set(given)
+    )
     progress.report(0.35, "joining objects")
     if len(others) == 1:
         pairs = [(sightings[item.id][0][1], box) for box, item in claimed.items() if sightings[item.id]]
@@ -140,7 +142,7 @@ def with_photo(
         scene, report = layout(frozenset(free)).optimise(scene, progress.part(0.8, 0.92), None)
         scene = set_metrics(scene, report.after)
     progress.report(0.92, "pictures of floor and walls")
-    placed = [placed_picture(r, _ids_of(p, r)) for p, r, _ in others] + [placed_picture(read, ids)]
+    placed = [to_placed_picture(r, _ids_of(p, r)) for p, r, _ in others] + [to_placed_picture(read, ids)]
     pictures = room_pictures(scene, placed, library, {p.id for p in scene.architecture.planes if p.id in movable})
     scene, named = with_pictures(scene, pictures)
     textures |= named
@@ -153,11 +155,11 @@ def with_photo(
 
 
 def _room_of(scene: Scene, read: ReadPhoto) -> GivenRoom:
-    world = moved_to_room(Scene(architecture=scene.architecture), np.linalg.inv(read.T_room_photo))
+    world = move_to_room(Scene(architecture=scene.architecture), np.linalg.inv(read.T_room_photo))
     return GivenRoom(world.architecture)
 
 
-def _known_photos(
+def _read_known_photos(
     known: Sequence[FurtherPhoto], choose: Callable[[Inputs], Stages], progress: Progress
 ) -> list[tuple[FurtherPhoto, ReadPhoto, RoomPhoto]]:
     """The known photos in which objects of the scene are seen, each with what it says by itself."""
@@ -166,7 +168,7 @@ def _known_photos(
         if photo.camera is not None and photo.seen:
             part = progress.part(number / len(known), 1.0)
             read = read_photo(PosedInputs(photo.inputs, photo.camera), choose(photo.inputs), part)
-            photos.append((photo, read, said_alone(read)))
+            photos.append((photo, read, estimate_room_photo(read)))
     return photos
 
 
@@ -191,9 +193,9 @@ def _with_fitted(
     for box, item in claimed.items():
         if sightings[item.id]:
             rows = (*sightings[item.id], (len(photos) - 1, box))
-            track = with_agreeing_boxes(fitted_track(rows, photos), photos)
+            track = with_agreeing_boxes(fit_track(rows, photos), photos)
             fitted[item.id] = track.cuboid
-            if _hangs(item, scene) and seen_whole(track.sightings(photos)):
+            if _hangs(item, scene) and is_seen_whole(track.sightings(photos)):
                 on_walls.append(track.cuboid)
     scene = replace(scene, objects=tuple(filling(o, fitted[o.id]) if o.id in fitted else o for o in scene.objects))
     if len(photos) <= 2:  # they do not tell how far they are apart
@@ -230,10 +232,10 @@ def _place_at_likeliest_distance(
         T[:3, 3] = eye + factor * (T[:3, 3] - eye)
         camera = Camera(read.posed.camera.intrinsics, T)
         moved = replace(read, posed=replace(read.posed, camera=camera), T_room_photo=photo_world(camera))
-        return moved, said_alone(moved)
+        return moved, estimate_room_photo(moved)
 
     def against(photo: RoomPhoto) -> float:
-        costs = [fitted_track(((0, a), (1, b)), (known, photo)).cuboid.cost for a, b in pairs]
+        costs = [fit_track(((0, a), (1, b)), (known, photo)).cuboid.cost for a, b in pairs]
         return float(np.minimum(costs, SETTINGS.max_cost).sum())
 
     tried = [place_at(float(f)) for f in DISTANCES]
@@ -280,12 +282,12 @@ def _share_of_new(
     """
     if not sightings:
         return 1.0
-    known = max((shown(others[number][2], index) for number, index in sightings), default=0.0)
-    new = shown(new_photo, box)
+    known = max((visibility_score(others[number][2], index) for number, index in sightings), default=0.0)
+    new = visibility_score(new_photo, box)
     return new / (new + known) if known > 0.0 and new > SETTINGS.clearly_better * known else None
 
 
-def _claimed(
+def _match_boxes_to_objects(
     objects: Sequence[SceneObject],
     sightings: Mapping[str, tuple[tuple[int, int], ...]],
     others: Sequence[RoomPhoto],
@@ -340,8 +342,8 @@ def _with_new(
         return scene, {}, {}
     there_now = {box: scene.object(item.id) for box, item in claimed.items()}
     tracks = [_track(k, one, there_now.get(k)) for k, one in enumerate(new_photo.alone)]
-    built = built_alone(read, 0, tracks, library, progress, room=room)
-    scene_in_room = moved_to_room(built.scene, read.T_room_photo)
+    built = build_photo_scene(read, 0, tracks, library, progress, room=room)
+    scene_in_room = move_to_room(built.scene, read.T_room_photo)
     ids: dict[str, str] = {track_name(k): item.id for k, item in claimed.items()}
     names: dict[int, str] = {}
     textures: dict[str, UInt8[np.ndarray, "_ _ 3"]] = {}
@@ -361,7 +363,7 @@ def _with_new(
             used = [m.texture for m in item.photo_materials if m.texture is not None and m.texture in built.textures]
             textures |= {name: built.textures[name] for name in used}
     edges = [scene_in_room.support_of(track_name(k)) for k in names]
-    new_edges = [_held(edge, ids, scene_in_room, scene) for edge in edges if edge is not None]
+    new_edges = [_transfer_support(edge, ids, scene_in_room, scene) for edge in edges if edge is not None]
     known = {o.id for o in scene.objects} | {p.id for p in scene.architecture.planes}
     supports = (*scene.supports, *(e for e in new_edges if e.parent in known))
     return replace(scene, supports=acyclic(supports)), names, textures
@@ -375,6 +377,6 @@ def _track(number: int, one: Sighted, item: SceneObject | None) -> Track:
     return Track(((0, number),), category(item.category), cuboid)
 
 
-def _held(edge: Support, ids: Mapping[str, str], scene_in_room: Scene, scene: Scene) -> Support:
+def _transfer_support(edge: Support, ids: Mapping[str, str], scene_in_room: Scene, scene: Scene) -> Support:
     edge = edge_in_room(edge, scene_in_room, scene.architecture)
     return replace(edge, child=ids[edge.child], parent=ids.get(edge.parent, edge.parent))

@@ -57,7 +57,7 @@ def align(
         metric: whether the poses are in metres.
         up: direction against gravity in the poses' world, where it is known.
     """
-    R = _levelled(readings, up)
+    R = _estimate_room_rotation(readings, up)
     cameras = [RoomAlignment(R, 1.0, np.zeros(3)).camera(r.camera) for r in readings]
     votes: list[tuple[float, float]] = []
     alone = [_alone(r, camera) for r, camera in zip(readings, cameras, strict=True)]
@@ -71,7 +71,9 @@ def align(
     return RoomAlignment(R, scale, np.array([0.0, 0.0, float(np.median(heights))]))
 
 
-def _levelled(readings: Sequence[PhotoReading], up: Float[np.ndarray, "3"] | None) -> Float[np.ndarray, "3 3"]:
+def _estimate_room_rotation(
+    readings: Sequence[PhotoReading], up: Float[np.ndarray, "3"] | None
+) -> Float[np.ndarray, "3 3"]:
     """The turn to +Z up with the room's axes along x and y."""
     turns = [r.camera.T_world_camera[:3, :3] @ r.estimate.best.R_world_camera.T for r in readings]
     weights = np.array([max(r.estimate.confidence * r.estimate.best.score, 1e-3) for r in readings])

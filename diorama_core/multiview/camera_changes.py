@@ -32,8 +32,10 @@ def following(photos: Sequence[FurtherPhoto], before: Camera | None, after: Came
     return tuple(
         replace(
             p,
-            camera=None if p.camera is None else Camera(p.camera.intrinsics, _scaled(p.camera.T_world_camera, scale)),
-            T_world_sphere=None if p.T_world_sphere is None else _scaled(p.T_world_sphere, scale),
+            camera=None
+            if p.camera is None
+            else Camera(p.camera.intrinsics, _scale_translation(p.camera.T_world_camera, scale)),
+            T_world_sphere=None if p.T_world_sphere is None else _scale_translation(p.T_world_sphere, scale),
         )
         for p in photos
     )
@@ -49,7 +51,7 @@ def _scale(before: Camera, after: Camera) -> float | None:
     return scale if np.abs(after.position - scale * before.position).max() < ROUNDING * max(size, 1.0) else None
 
 
-def _scaled(T: Float[np.ndarray, "4 4"], scale: float) -> Float[np.ndarray, "4 4"]:
+def _scale_translation(T: Float[np.ndarray, "4 4"], scale: float) -> Float[np.ndarray, "4 4"]:
     T = T.copy()
     T[:3, 3] *= scale
     return T

@@ -119,7 +119,7 @@ def camera_in_room(
     cameras = []
     for number, camera in enumerate(finalists):
         progress.report(0.4 + 0.6 * number / len(finalists), "finding where the photo was taken")
-        cameras.append(search.fitted(camera, floor.buffer(SETTINGS.outside_m)))
+        cameras.append(search.fit(camera, floor.buffer(SETTINGS.outside_m)))
     best = min(cameras, key=lambda fit: fit.cost)
     return best if len(best.met) >= SETTINGS.min_same and best.cost <= SETTINGS.max_cost * len(best.met) else None
 
@@ -163,7 +163,7 @@ class _Search:
         count = SETTINGS.headings
         for heading in range(count):
             progress.report(0.4 * heading / count, "looking for where the photo was taken")
-            score = self._scores(places, self._turned(heading))
+            score = self._scores(places, self._heading_rotation(heading))
             best = np.argsort(-score, kind="stable")[: 4 * SETTINGS.finalists]
             rows += [(float(score[k]), heading, int(k)) for k in best]
         chosen: list[tuple[int, int]] = []
@@ -172,7 +172,7 @@ class _Search:
                 chosen.append((heading, k))
             if len(chosen) == SETTINGS.finalists:
                 break
-        return [self._camera(self._turned(heading), places[k]) for heading, k in chosen]
+        return [self._camera(self._heading_rotation(heading), places[k]) for heading, k in chosen]
 
     def _alike(self, places: Float[np.ndarray, "p 3"], a: tuple[int, int], b: tuple[int, int]) -> bool:
         count = SETTINGS.headings
@@ -180,7 +180,7 @@ class _Search:
         apart = np.linalg.norm(places[a[1], :2] - places[b[1], :2])
         return bool(apart < SETTINGS.apart_m and turn < SETTINGS.apart_rad)
 
-    def _turned(self, heading: int) -> Float[np.ndarray, "3 3"]:
+    def _heading_rotation(self, heading: int) -> Float[np.ndarray, "3 3"]:
         return yaw_rotation(2 * np.pi * heading / SETTINGS.headings) @ self._R_level
 
     def _camera(self, R: Float[np.ndarray, "3 3"], place: Float[np.ndarray, "3"]) -> Camera:
@@ -200,24 +200,24 @@ class _Search:
         shared = self._weight * box_iou(bounds[:, :, None], self._boxes.box_px[None, None])
         return np.minimum(shared.max(axis=1).sum(axis=1), shared.max(axis=2).sum(axis=1))
 
-    def fitted(self, camera: Camera, room: Polygon) -> FoundCamera:
-        """The camera after its things were fitted to the boxes that are theirs."""
+    def fit(self, camera: Camera, room: Polygon) -> FoundCamera:
+        """Fit the camera so that its things fill the boxes that are theirs."""
         pairs, cost = self._pairs(camera), np.inf
         for _ in range(SETTINGS.rounds):
             if len(pairs) < SETTINGS.min_same:
                 break
-            camera, cost = self._refined(camera, pairs)
+            camera, cost = self._refine(camera, pairs)
             before, pairs = pairs, self._pairs(camera)
             if pairs == before:
                 break
-        shared = self._shared(camera)
+        shared = self._cuboid_box_iou(camera)
         met = tuple((thing, box) for thing, box in pairs if shared[thing, box] >= SETTINGS.same)
-        odd = max(self._could_be_met - len(met), 0) + self._unmarked(camera, {thing for thing, _ in pairs})
+        odd = max(self._could_be_met - len(met), 0) + self._count_unmarked(camera, {thing for thing, _ in pairs})
         if not contains_xy(room, *camera.position[:2]) or self._is_inside_object(camera):
             cost = np.inf
         return FoundCamera(camera, cost + SETTINGS.odd_cost * odd, met)
 
-    def _unmarked(self, camera: Camera, marked: set[int]) -> int:
+    def _count_unmarked(self, camera: Camera, marked: set[int]) -> int:
         """How many things that nothing hides are in view without a box."""
         bounds, visible = self._bounds(camera, np.arange(len(self._things)))
         area = (bounds[:, 2:] - bounds[:, :2]).prod(axis=1)
@@ -236,11 +236,11 @@ class _Search:
         return any((np.abs(a) < t.size_m / 2).all() for a, t in zip(away, self._things, strict=True))
 
     def _pairs(self, camera: Camera) -> list[tuple[int, int]]:
-        shared = self._shared(camera)
+        shared = self._cuboid_box_iou(camera)
         rows, columns = linear_sum_assignment(-shared)
         return [(int(r), int(c)) for r, c in zip(rows, columns, strict=True) if shared[r, c] > 0.1]
 
-    def _shared(self, camera: Camera) -> Float[np.ndarray, "t b"]:
+    def _cuboid_box_iou(self, camera: Camera) -> Float[np.ndarray, "t b"]:
         bounds, visible = self._bounds(camera, np.arange(len(self._corners)))
         seen = self._boxes.box_px
         low, high = np.maximum(bounds[:, None], seen), np.minimum(bounds[:, None], seen)
@@ -253,13 +253,13 @@ class _Search:
     def _bounds(self, camera: Camera, which: np.ndarray) -> tuple[Float[np.ndarray, "m 4"], Bool[np.ndarray, "m"]]:
         return visible_bounds(camera.to_camera(self._corners[which]), camera.intrinsics)
 
-    def _refined(self, camera: Camera, pairs: Sequence[tuple[int, int]]) -> tuple[Camera, float]:
+    def _refine(self, camera: Camera, pairs: Sequence[tuple[int, int]]) -> tuple[Camera, float]:
         """Least squares over turn, place and focal length, robust against boxes that are of something else."""
         cuboids, boxes = (np.array(side) for side in zip(*pairs, strict=True))
         seen, sigma, short = self._boxes.box_px[boxes], self._sigma[boxes], self._short[boxes]
         outward = np.array([-1.0, -1.0, 1.0, 1.0])
 
-        def moved(unknowns: Float[np.ndarray, "7"]) -> Camera:
+        def move(unknowns: Float[np.ndarray, "7"]) -> Camera:
             T = camera.T_world_camera.copy()
             T[:3, :3] = T[:3, :3] @ Rotation.from_rotvec(unknowns[:3]).as_matrix()
             T[:3, 3] += unknowns[3:6]
@@ -267,7 +267,7 @@ class _Search:
             return Camera(replace(k, fx=k.fx * factor, fy=k.fy * factor), T)
 
         def off(unknowns: Float[np.ndarray, "7"]) -> Float[np.ndarray, "r"]:
-            moved_camera = moved(unknowns)
+            moved_camera = move(unknowns)
             bounds, _ = self._bounds(moved_camera, cuboids)
             beyond = (bounds - seen) * outward / sigma
             edges = np.where(short, np.minimum(beyond, 0.0), beyond)
@@ -281,4 +281,4 @@ class _Search:
         start = np.zeros(7)
         start[6] = float(np.log(camera.intrinsics.fx / self._k.fx))
         best = least_squares(off, start, loss="soft_l1", max_nfev=25)
-        return moved(best.x), 2.0 * float(best.cost)
+        return move(best.x), 2.0 * float(best.cost)

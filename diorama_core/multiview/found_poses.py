@@ -63,7 +63,7 @@ def find_poses(photos: Sequence[UnposedPhoto], progress: Progress = SILENT) -> P
     with tempfile.TemporaryDirectory(prefix="diorama-photos-") as temporary:
         folder = Path(temporary)
         database, pictures = folder / "database.db", folder / "pictures"
-        names = _matched(colmap, photos, database, pictures, progress.part(0.0, 0.8))
+        names = _match_photos(colmap, photos, database, pictures, progress.part(0.0, 0.8))
         progress.report(0.8, "Placing the cameras")
         place = partial(colmap.incremental_mapping, database, pictures, folder, options=_mapping(colmap))
         models = _cancellable(colmap, progress, place)
@@ -77,12 +77,12 @@ def find_poses(photos: Sequence[UnposedPhoto], progress: Progress = SILENT) -> P
         groups = [frozenset(names[m.image(i).name] for i in m.reg_image_ids()) for m in models.values()]
     joined = {names[p.name]: p for p in poses.photos}
     left_out = [p.name for p in photos if p.name not in joined]
-    notes = _left_out(left_out, groups)
+    notes = _describe_excluded(left_out, groups)
     placed = tuple(replace(joined[p.name], name=p.name) for p in photos if p.name in joined)
     return replace(poses, photos=placed, notes=(*poses.notes, *notes), left_out=tuple(left_out))
 
 
-def _left_out(names: Sequence[str], groups: Sequence[frozenset[str]]) -> tuple[str, ...]:
+def _describe_excluded(names: Sequence[str], groups: Sequence[frozenset[str]]) -> tuple[str, ...]:
     """A line for photos that join one another, and one for those that join none."""
     rest, lines = list(names), []
     for group in sorted(groups, key=lambda g: (-len(g), sorted(g))):
@@ -116,7 +116,7 @@ def common_points(
     points_of_photos = {p.name: np.zeros((0, 4)) for p in photos}
     with tempfile.TemporaryDirectory(prefix="diorama-photos-") as temporary:
         database = Path(temporary) / "database.db"
-        names = _matched(colmap, (*photos, new), database, Path(temporary) / "pictures", progress)
+        names = _match_photos(colmap, (*photos, new), database, Path(temporary) / "pictures", progress)
         scales = {p.name: _scale(p) for p in (*photos, new)}
         with colmap.Database.open(str(database)) as opened:
             images = {i.image_id: names[i.name] for i in opened.read_all_images()}
@@ -133,7 +133,7 @@ def common_points(
     return tuple(points_of_photos[p.name] for p in photos)
 
 
-def _matched(
+def _match_photos(
     colmap: ModuleType, photos: Sequence[UnposedPhoto], database: Path, pictures: Path, progress: Progress
 ) -> Mapping[str, str]:
     """Features of all photos and matches of all pairs in a database; the name of each photo by its picture's."""

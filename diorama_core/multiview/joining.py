@@ -59,17 +59,17 @@ class Track:
     """Boxes of it that the cuboid does not fit (`agreement`)."""
 
     @property
-    def fitted(self) -> Boxes:
+    def inliers(self) -> Boxes:
         """The boxes that the cuboid fits."""
         return tuple(b for b in self.boxes if b not in self.left_out)
 
     def sightings(self, photos: Sequence[RoomPhoto]) -> list[tuple[PosedBoxes, int]]:
         """As `fit_jointly` takes them."""
-        return [(photos[photo].boxes, box) for photo, box in self.fitted]
+        return [(photos[photo].boxes, box) for photo, box in self.inliers]
 
 
-def joined_objects(photos: Sequence[RoomPhoto], progress: Progress = SILENT) -> tuple[Track, ...]:
-    """The room's objects. Every box is of one of them; an object has one box at most in a photo.
+def join_objects(photos: Sequence[RoomPhoto], progress: Progress = SILENT) -> tuple[Track, ...]:
+    """Join the boxes of all photos to objects: every box is of one of them, an object has one box at most in a photo.
 
     Photo by photo, known objects claim the boxes of their kind that their cuboids cover best; what is left is new. Then
     every photo's boxes are claimed again by cuboids that were fitted to all other photos.
@@ -109,24 +109,24 @@ class _Joining:
         for box in range(count):
             if box in claimed:
                 boxes = tracks[claimed[box]].boxes
-                joined[claimed[box]] = self._fitted(tuple(sorted((*boxes, (number, box)))))
+                joined[claimed[box]] = self._fit(tuple(sorted((*boxes, (number, box)))))
             else:
-                joined.append(self._fitted(((number, box),)))
+                joined.append(self._fit(((number, box),)))
         return joined
 
     def without_photo(self, tracks: list[Track], number: int) -> list[Track]:
         """The tracks as the other photos have them."""
         left = [tuple(b for b in track.boxes if b[0] != number) for track in tracks]
-        return [self._fitted(boxes) for boxes in left if boxes]
+        return [self._fit(boxes) for boxes in left if boxes]
 
     def _overlap(self, track: Track, number: int, box: int) -> float:
         only = track.boxes[0] if len(track.boxes) == 1 else None
         first = None if only is None else (self._photos[only[0]], only[1])
         return overlap(track.cuboid, first, self._photos[number], box)
 
-    def _fitted(self, boxes: Boxes) -> Track:
+    def _fit(self, boxes: Boxes) -> Track:
         if boxes not in self._fits:
-            self._fits[boxes] = fitted_track(boxes, self._photos)
+            self._fits[boxes] = fit_track(boxes, self._photos)
         return self._fits[boxes]
 
 
@@ -151,23 +151,27 @@ def overlap(cuboid: JointCuboid, only: tuple[RoomPhoto, int] | None, photo: Room
         box: a box of it.
     """
     if only is None:
-        return _shared(cuboid, photo, box)
+        return _cuboid_box_iou(cuboid, photo, box)
     first, index = only
     one = photo.alone[box]
     moved = JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0)
     return max(
-        penalty * max(_shared(_pushed(cuboid, first, f), photo, box), _shared(_pushed(moved, photo, f), first, index))
+        penalty
+        * max(
+            _cuboid_box_iou(_scale_about_camera(cuboid, first, f), photo, box),
+            _cuboid_box_iou(_scale_about_camera(moved, photo, f), first, index),
+        )
         for f, penalty in zip(FARTHER, FARTHER_PENALTY, strict=True)
     )
 
 
-def _pushed(cuboid: JointCuboid, photo: RoomPhoto, factor: float) -> JointCuboid:
+def _scale_about_camera(cuboid: JointCuboid, photo: RoomPhoto, factor: float) -> JointCuboid:
     """The cuboid seen alike in its photo, so many times as far and as large."""
     eye = photo.boxes.camera.position
     return replace(cuboid, centre=eye + factor * (cuboid.centre - eye), size_m=factor * cuboid.size_m)
 
 
-def _shared(cuboid: JointCuboid, photo: RoomPhoto, box: int) -> float:
+def _cuboid_box_iou(cuboid: JointCuboid, photo: RoomPhoto, box: int) -> float:
     """Intersection over union of a cuboid's outline in a photo with a box."""
     camera = photo.boxes.camera
     corners = cuboid_corners(cuboid.centre[None], np.array([cuboid.yaw_rad]), cuboid.size_m[None])
@@ -182,8 +186,8 @@ def _shared(cuboid: JointCuboid, photo: RoomPhoto, box: int) -> float:
     return float(box_iou(shown, seen)) if (shown[2:] > shown[:2]).all() else 0.0
 
 
-def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
-    """The cuboid of some boxes: of one box what its photo says, of more the joint fit."""
+def fit_track(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
+    """Fit the cuboid of some boxes: of one box what its photo says, of more the joint fit."""
     alone = [photos[photo].alone[box] for photo, box in boxes]
     names = [a.kind.name for a in alone]
     kind = alone[names.index(max(sorted(set(names)), key=names.count))].kind
@@ -203,7 +207,7 @@ def fitted_track(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
     return Track(boxes, kind, fitted)
 
 
-def shown(photo: RoomPhoto, box: int) -> float:
+def visibility_score(photo: RoomPhoto, box: int) -> float:
     """How well a photo shows an object: the area of its box, less where edges are hidden or cut."""
     seen = photo.boxes.observations
     x1, y1, x2, y2 = seen.box_px[box]
@@ -220,8 +224,8 @@ def with_agreeing_boxes(track: Track, photos: Sequence[RoomPhoto]) -> Track:
     """
     fitted = track
     while len(fitted.boxes) > 1 and fitted.cuboid.cost > SETTINGS.left_out_cost:
-        fewer = [fitted_track(tuple(b for b in fitted.boxes if b != out), photos) for out in fitted.boxes]
-        best = min(fewer, key=lambda t: (t.cuboid.cost, -max(shown(photos[p], box) for p, box in t.boxes)))
+        fewer = [fit_track(tuple(b for b in fitted.boxes if b != out), photos) for out in fitted.boxes]
+        best = min(fewer, key=lambda t: (t.cuboid.cost, -max(visibility_score(photos[p], box) for p, box in t.boxes)))
         if best.cuboid.cost + SETTINGS.left_out_cost >= fitted.cuboid.cost:
             break
         fitted = best

@@ -91,9 +91,9 @@ def fit_jointly(
     base_m = float(np.median([s[2] for s in starts])) if upright_m is None else upright_m
     problem = _Joint(sightings, [b[0] for b in batch], starts[0][:2], None if on_floor else base_m)
     extra = np.array([mode.cost + (odd_cost if free else 0.0) for mode, _, free, _ in batch])
-    unknowns, costs = _minimised(problem, unknowns, fixed, SETTINGS.first_iterations)
+    unknowns, costs = _minimise(problem, unknowns, fixed, SETTINGS.first_iterations)
     last = np.argsort(costs + extra, kind="stable")[: SETTINGS.finalists]
-    unknowns, costs = _minimised(problem.rows(last), unknowns[last], fixed[last], SETTINGS.iterations)
+    unknowns, costs = _minimise(problem.rows(last), unknowns[last], fixed[last], SETTINGS.iterations)
     costs = costs + extra[last]
     best = int(np.argmin(costs))
     x, y, *log_size, base, yaw = unknowns[best]
@@ -161,7 +161,7 @@ class _Joint:
         part._whitening = self._whitening[chosen]
         return part
 
-    def bounded(self, unknowns: Float[np.ndarray, "n 7"]) -> Float[np.ndarray, "n 7"]:
+    def clip_sizes(self, unknowns: Float[np.ndarray, "n 7"]) -> Float[np.ndarray, "n 7"]:
         """The nearest unknowns with plausible sizes."""
         most = SETTINGS.max_sigmas * self._sigma
         off = np.clip(unknowns[:, 2:5] - self._log_size, -most, most)
@@ -175,7 +175,7 @@ class _Joint:
             rows = problems.rows(chosen).with_columns(yaw_rad=unknowns[:, 6])
             edges = values(_as_seen(unknowns, camera, view), rows, view).residuals[:, :4]
             behind = (rows.hidden_px > 0) & (edges > 0)
-            parts.append(np.where(behind, _bounded(edges, SETTINGS.max_hidden), edges))
+            parts.append(np.where(behind, _limit_residuals(edges, SETTINGS.max_hidden), edges))
         size = np.einsum("nij,nj->ni", self._whitening[chosen], unknowns[:, 2:5] - self._log_size[chosen])
         parts += [size, (unknowns[:, :2] - self._place) / SETTINGS.place_sigma_m]
         if self._base_m is not None:
@@ -184,7 +184,7 @@ class _Joint:
         return np.concatenate(parts, axis=1)
 
 
-def _bounded(edges: Float[np.ndarray, "n 4"], most: float) -> Float[np.ndarray, "n 4"]:
+def _limit_residuals(edges: Float[np.ndarray, "n 4"], most: float) -> Float[np.ndarray, "n 4"]:
     """Residuals that reach a limit: how much more something hides does not matter, however many photos say it."""
     return np.asarray(edges / np.sqrt(1.0 + (edges / most) ** 2))
 
@@ -199,14 +199,14 @@ def _as_seen(unknowns: Float[np.ndarray, "n 7"], camera: Camera, view: View) -> 
     return np.column_stack([plan @ right / safe, np.log(safe), unknowns[:, 2:5], unknowns[:, 5]])
 
 
-def _minimised(
+def _minimise(
     problem: _Joint, unknowns: Float[np.ndarray, "n 7"], fixed: Bool[np.ndarray, "n 7"], iterations: int
 ) -> tuple[Float[np.ndarray, "n 7"], Float[np.ndarray, "n"]]:
     """Levenberg-Marquardt over the batch, each row with its own damping."""
     count = len(unknowns)
     moves = STEP * np.concatenate([np.zeros((1, UNKNOWNS)), np.eye(UNKNOWNS)])
     damping = np.full(count, 1e-2)
-    unknowns = problem.bounded(unknowns)
+    unknowns = problem.clip_sizes(unknowns)
     cost = (problem(unknowns) ** 2).sum(axis=1)
     for _ in range(iterations):
         probes = (unknowns[None] + moves[:, None]).reshape(-1, UNKNOWNS)
@@ -218,7 +218,7 @@ def _minimised(
         normal = normal + np.eye(UNKNOWNS) * (damping[:, None] * (diagonal + 1e-2) + fixed)[:, None]
         step = -np.linalg.solve(normal, gradient[..., None])[..., 0]
         step *= np.minimum(1.0, 1.0 / np.maximum(np.abs(step / LONGEST).max(axis=1, keepdims=True), 1e-12))
-        trial = problem.bounded(unknowns + step)
+        trial = problem.clip_sizes(unknowns + step)
         reached = (problem(trial) ** 2).sum(axis=1)
         better = reached < cost
         settled = (np.abs(cost - reached) < 1e-3).all()

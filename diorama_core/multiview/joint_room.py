@@ -201,7 +201,10 @@ def _outline(
     inside = [c[:, :2] for c in cells if (here := is_in_polygon(grid, c[:, :2])).any() and says[here].sum() > 0]
     if not inside:
         return None
-    sections = [manifold3d.CrossSection([c], manifold3d.FillRule.NonZero).offset(1e-4) for c in map(_turned, inside)]
+    sections = [
+        manifold3d.CrossSection([c], manifold3d.FillRule.NonZero).offset(1e-4)
+        for c in map(_orient_counter_clockwise, inside)
+    ]
     union = manifold3d.CrossSection.batch_boolean(sections, manifold3d.OpType.Add).simplify(1e-2)
     outlines = [o for o in union.to_polygons() if signed_area(o) > 0]
     eyes = np.array([p.camera.position[:2] for p in photos])
@@ -277,7 +280,7 @@ def _wall(
             continue
         # Seen from the room, a wall's foot from left to right runs against the outline.
         polygon = np.array([[*end, level_m], [*start, level_m], [*start, top_m], [*end, top_m]])
-        covering = [w for w in line.walls if _covered(w, start, along, length) > 0]
+        covering = [w for w in line.walls if _overlap_length(w, start, along, length) > 0]
         seen = np.zeros(max(2, round(length / SETTINGS.grid_m)), dtype=bool)
         for wall in covering:
             seen |= _covers(wall, start, along, length, len(seen))
@@ -295,11 +298,11 @@ def _covers(
     return np.asarray((at > reach.min()) & (at < reach.max()))
 
 
-def _covered(wall: Plane, start: Float[np.ndarray, "2"], along: Float[np.ndarray, "2"], length: float) -> float:
+def _overlap_length(wall: Plane, start: Float[np.ndarray, "2"], along: Float[np.ndarray, "2"], length: float) -> float:
     reach = (wall.polygon[:, :2] - start) @ along
     return float(min(reach.max(), length) - max(reach.min(), 0.0))
 
 
-def _turned(polygon: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n 2"]:
+def _orient_counter_clockwise(polygon: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n 2"]:
     """The polygon counter-clockwise."""
     return polygon if signed_area(polygon) > 0 else polygon[::-1]

@@ -43,7 +43,7 @@ class Lens:
         k = [*self.k, *([0.0] * (6 - len(self.k)))]
         return np.array([*k[:2], *self.p, *k[2:]])
 
-    def turned(self, quarters: int) -> Lens:
+    def rotate(self, quarters: int) -> Lens:
         """The lens of a picture after clockwise quarter turns."""
         p1, p2 = self.p
         for _ in range(quarters % 4):
@@ -78,14 +78,14 @@ def without_distortion(inputs: Inputs, lens: Lens) -> Inputs:
         raise InputError(
             "--distortion needs the focal length, which the photo's header does not say: add --fov or --intrinsics"
         )
-    return replace(straightened(inputs, k, lens), intrinsics=k)
+    return replace(undistort(inputs, k, lens), intrinsics=k)
 
 
 STRAIGHT = Lens()
 """Bends nothing."""
 
 
-def straightened(inputs: Inputs, k: Intrinsics, lens: Lens) -> Inputs:
+def undistort(inputs: Inputs, k: Intrinsics, lens: Lens) -> Inputs:
     """A photo with everything that lies on it, without what its lens bends; the camera stays.
 
     Args:
@@ -111,8 +111,8 @@ def straightened(inputs: Inputs, k: Intrinsics, lens: Lens) -> Inputs:
     return replace(
         inputs,
         photo=replace(inputs.photo, rgb=rgb),
-        boxes=tuple(_moved(b, k, lens) for b in inputs.boxes),
-        instance_boxes=tuple((n, _moved(b, k, lens)) for n, b in inputs.instance_boxes),
+        boxes=tuple(_undistort_box(b, k, lens) for b in inputs.boxes),
+        instance_boxes=tuple((n, _undistort_box(b, k, lens)) for n, b in inputs.instance_boxes),
         instances=None if inputs.instances is None else exactly(inputs.instances.astype(np.float32)).astype(np.int32),
         depth_m=None if inputs.depth_m is None else exactly(inputs.depth_m),
         normals_camera=None if inputs.normals_camera is None else exactly(inputs.normals_camera),
@@ -128,11 +128,11 @@ def straight_points(points: Float[np.ndarray, "n 2"], k: Intrinsics, lens: Lens)
     return np.asarray(undistort(points.reshape(-1, 1, 2).astype(np.float64), K, lens.coefficients, P=K)).reshape(-1, 2)
 
 
-def bent_box(marked: LabelledBox, k: Intrinsics, lens: Lens) -> LabelledBox:
+def distort_box(marked: LabelledBox, k: Intrinsics, lens: Lens) -> LabelledBox:
     """The box of a bent photo that straightening moves to a given one; up to the photo's side where that one is."""
     goal = bent = np.array(marked.box, dtype=float)
     for _ in range(12):
-        straight = _moved(replace(marked, box=(*bent.tolist(),)), k, lens).box
+        straight = _undistort_box(replace(marked, box=(*bent.tolist(),)), k, lens).box
         bent = np.clip(bent + goal - straight, 0.0, [k.width, k.height] * 2)
     return replace(marked, box=(*bent.tolist(),))
 
@@ -142,7 +142,7 @@ def _farthest_px(k: Intrinsics, lens: Lens) -> float:
     return float(np.linalg.norm(straight_points(border, k, lens) - border, axis=1).max())
 
 
-def _moved(marked: LabelledBox, k: Intrinsics, lens: Lens) -> LabelledBox:
+def _undistort_box(marked: LabelledBox, k: Intrinsics, lens: Lens) -> LabelledBox:
     points = straight_points(_border(*(float(v) for v in marked.box)), k, lens)
     low = np.clip(points.min(axis=0), 0.0, [k.width, k.height])
     high = np.clip(points.max(axis=0), 0.0, [k.width, k.height])

@@ -74,12 +74,12 @@ def room_holding(
     """
 
     def without_wall(room: Architecture) -> int:
-        return sum(not _held(room, thing) for thing in mounted)
+        return sum(not _is_near_wall(room, thing) for thing in mounted)
 
     return preferred if without_wall(preferred) == 0 else min((preferred, *others), key=without_wall)
 
 
-def _held(room: Architecture, thing: JointCuboid) -> bool:
+def _is_near_wall(room: Architecture, thing: JointCuboid) -> bool:
     """Whether a wall is within reach of a thing in plan."""
     reach = SETTINGS.reach_m + float(thing.size_m[:2].min()) / 2
     return any(_from_wall(wall, thing.centre[:2]) < reach for wall in room.by_role("wall"))
@@ -97,7 +97,7 @@ def hangs_on_wall(kind: str) -> bool:
     return category(kind).mount == "wall" or kind == "door"
 
 
-def seen_whole(sightings: Sequence[tuple[PosedBoxes, int]]) -> bool:
+def is_seen_whole(sightings: Sequence[tuple[PosedBoxes, int]]) -> bool:
     """Whether two photos or more show a thing, and one of them uncut: else its usual size says where it is."""
     return len(sightings) > 1 and any(not photo.observations.truncated[box].any() for photo, box in sightings)
 

@@ -41,7 +41,7 @@ def edge_in_room(edge: Support, scene: Scene, room: Architecture) -> Support:
     return replace(edge, parent=min(alike)[1] if alike else "", adheres_to=())
 
 
-def moved_to_room(scene: Scene, T: Float[np.ndarray, "4 4"]) -> Scene:
+def move_to_room(scene: Scene, T: Float[np.ndarray, "4 4"]) -> Scene:
     """A scene of a photo's own world, and all candidates' poses, in the room: `p_room = T @ p`, rigid."""
     R, t = T[:3, :3], T[:3, 3]
 
@@ -65,7 +65,7 @@ def filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
     Extents that boxes hardly tell are those that the shape has in proportion to the others.
     """
 
-    def fitted(pose: Pose, shape_size_m: tuple[float, float, float]) -> Pose:
+    def fit(pose: Pose, shape_size_m: tuple[float, float, float]) -> Pose:
         turn = round((pose.yaw_rad - joint.yaw_rad) / (np.pi / 2))
         axes = [1, 0, 2] if turn % 2 else [0, 1, 2]
         shape = np.array(shape_size_m)
@@ -74,8 +74,8 @@ def filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
         base = joint.centre[2] - joint.size_m[2] / 2
         return Pose(R, np.array([*joint.centre[:2], base + size[2] / 2]), size / shape)
 
-    candidates = tuple(replace(c, pose=fitted(c.pose, c.shape_size_m)) for c in item.candidates)
-    return replace(item, pose=fitted(item.pose, item.shape_size_m), candidates=candidates)
+    candidates = tuple(replace(c, pose=fit(c.pose, c.shape_size_m)) for c in item.candidates)
+    return replace(item, pose=fit(item.pose, item.shape_size_m), candidates=candidates)
 
 
 def set_into_wall(item: SceneObject) -> SceneObject:

@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float, UInt8
 
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
-from diorama_core.multiview.lens import Lens, bent_box, straight_points, straightened
+from diorama_core.multiview.lens import Lens, distort_box, straight_points, undistort
 from diorama_core.scene.types import Intrinsics
 
 
@@ -51,7 +51,7 @@ _SAMPLES = 17
 """Points of each edge that are straightened."""
 
 
-def straightened_by_lines(inputs: Inputs, k1: float | None = None) -> tuple[Inputs, tuple[str, ...]]:
+def undistort_by_lines(inputs: Inputs, k1: float | None = None) -> tuple[Inputs, tuple[str, ...]]:
     """One photo with everything that lies on it, straightened where its lines say that the lens bends them; and the
     note that it was.
 
@@ -59,8 +59,8 @@ def straightened_by_lines(inputs: Inputs, k1: float | None = None) -> tuple[Inpu
         inputs: as given.
         k1: what the lines said before (`Photo.straightened`), 0 to leave the photo as it is; None to ask them.
     """
-    k, lens = fitted_lens(inputs.photo.rgb) if k1 is None else _known_lens(inputs.photo, k1)
-    straight = straightened(inputs, k, lens)
+    k, lens = fit_lens(inputs.photo.rgb) if k1 is None else _lens_from_coefficient(inputs.photo, k1)
+    straight = undistort(inputs, k, lens)
     if straight is inputs:
         return inputs, ()
     camera = inputs.intrinsics
@@ -72,14 +72,14 @@ def straightened_by_lines(inputs: Inputs, k1: float | None = None) -> tuple[Inpu
 
 def box_before_straightening(box: LabelledBox, photo: Photo) -> LabelledBox:
     """A box of a straightened photo as it is in the photo's file."""
-    return bent_box(box, *_known_lens(photo, photo.straightened or 0.0))
+    return distort_box(box, *_lens_from_coefficient(photo, photo.straightened or 0.0))
 
 
-def _known_lens(photo: Photo, k1: float) -> tuple[Intrinsics, Lens]:
+def _lens_from_coefficient(photo: Photo, k1: float) -> tuple[Intrinsics, Lens]:
     return _camera(photo.width, photo.height), Lens((k1,) if k1 else ())
 
 
-def fitted_lens(rgb: UInt8[np.ndarray, "h w 3"]) -> tuple[Intrinsics, Lens]:
+def fit_lens(rgb: UInt8[np.ndarray, "h w 3"]) -> tuple[Intrinsics, Lens]:
     """The lens by which a photo's lines are bent, and the camera that its coefficient is for.
 
     The lens bends nothing where too few lines say that there is any distortion.

@@ -179,14 +179,14 @@ def _colmap_text(folder: Path) -> Poses:
 
 
 def _lines(path: Path, *, keep_empty: bool = False) -> Iterator[str]:
-    with _opened(path) as data, TextIOWrapper(data, encoding="utf-8") as stream:
+    with _open(path) as data, TextIOWrapper(data, encoding="utf-8") as stream:
         for line in stream:
             text = line.strip()
             if not text.startswith("#") and (text or keep_empty):
                 yield text
 
 
-def _opened(path: Path) -> BinaryIO:
+def _open(path: Path) -> BinaryIO:
     """A file that is not too large to be a list of cameras."""
     if path.stat().st_size > MAX_BYTES:
         raise ValueError(f"{path.name} has more than the {megabytes(MAX_BYTES)} that are read")
@@ -196,13 +196,13 @@ def _opened(path: Path) -> BinaryIO:
 def _colmap_binary(folder: Path) -> Poses:
     cameras: dict[int, tuple[Intrinsics, Lens]] = {}
     photos = []
-    with _opened(folder / "cameras.bin") as stream:
+    with _open(folder / "cameras.bin") as stream:
         for _ in range(_count(stream)):
             number, model, width, height = struct.unpack("<iiQQ", stream.read(24))
             name, count = MODELS[model]
             parameters = struct.unpack(f"<{count}d", stream.read(8 * count))
             cameras[number] = _colmap_camera(name, width, height, list(parameters))
-    with _opened(folder / "images.bin") as stream:
+    with _open(folder / "images.bin") as stream:
         for _ in range(_count(stream)):
             _, *numbers, camera = struct.unpack("<i7di", stream.read(64))
             text = bytearray()

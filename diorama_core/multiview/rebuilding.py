@@ -69,7 +69,7 @@ def with_photos_again(
         try:
             if before is None or scene.camera is None:
                 raise InputError("the scene has no camera")
-            carried_photo = replace(photo, camera=carried(photo.camera, before, scene.camera), seen=())
+            carried_photo = replace(photo, camera=transfer_camera(photo.camera, before, scene.camera), seen=())
             known = photos_of_scene(scene, inputs, done)
             ids = frozenset(o.id for o in scene.objects) | {p.id for p in scene.architecture.planes}
             added = with_photo(scene, known, carried_photo, ids, ids, library, choose, layout, part)
@@ -82,7 +82,7 @@ def with_photos_again(
     return Rebuilt(scene, tuple(done), textures, tuple(left_out))
 
 
-def carried(camera: Camera, before: Camera, after: Camera) -> Camera:
+def transfer_camera(camera: Camera, before: Camera, after: Camera) -> Camera:
     """A camera that is to another one as it was, when that one is found anew.
 
     Args:

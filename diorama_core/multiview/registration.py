@@ -82,7 +82,7 @@ class CommonPoints:
         return replace(self, known_px=self.known_px[which], new_px=self.new_px[which], points=self.points[which])
 
 
-def registered_camera(
+def register_camera(
     new: UnposedPhoto, known: Sequence[PlacedPhoto], depth_along: DepthAlong, progress: Progress = SILENT
 ) -> Camera:
     """The camera of a new photo, in the room.
@@ -111,7 +111,7 @@ def registered_camera(
     else:
         focal, sigma = width / (2 * float(np.tan(LIKELY_FOV_RAD / 2))), GUESSED_LOG_SIGMA
     k = Intrinsics(width, height, focal, focal, width / 2, height / 2)
-    camera = placed_camera([c for c in common if len(c.points)], k, sigma)
+    camera = solve_camera([c for c in common if len(c.points)], k, sigma)
     if camera is None:
         raise InputError(
             f"{new.name} does not join: it has too little in common with the photos that are there; "
@@ -127,7 +127,7 @@ def _surface_points(camera: Camera, pixels: Float[np.ndarray, "n 4"], depth_alon
     return CommonPoints(camera, pixels[hit, :2], pixels[hit, 2:], points)
 
 
-def placed_camera(common: Sequence[CommonPoints], k: Intrinsics, focal_log_sigma: float) -> Camera | None:
+def solve_camera(common: Sequence[CommonPoints], k: Intrinsics, focal_log_sigma: float) -> Camera | None:
     """The camera that sees common points where they are seen; None where too few agree on one.
 
     Args:
@@ -163,10 +163,10 @@ def placed_camera(common: Sequence[CommonPoints], k: Intrinsics, focal_log_sigma
     right[inliers] = True
     ends = np.cumsum([0, *(len(c.points) for c in common)])
     supported = [right[a:b] for a, b in pairwise(ends)]
-    return _refined(common, supported, tried, turn, shift, focal_log_sigma)
+    return _refine_camera(common, supported, tried, turn, shift, focal_log_sigma)
 
 
-def _refined(
+def _refine_camera(
     common: Sequence[CommonPoints],
     supported: Sequence[Bool[np.ndarray, "_"]],
     k: Intrinsics,
@@ -270,15 +270,19 @@ def camera_of(
     def depth_along(camera: Camera, pixels: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n"]:
         return caster.first_hits(PinholeView(camera).rays(pixels)).distance.astype(np.float64)
 
-    placed = [PlacedPhoto(_unposed(p.name, p.inputs.photo, p.camera), p.camera) for p in known if p.camera is not None]
+    placed = [
+        PlacedPhoto(_make_unposed_photo(p.name, p.inputs.photo, p.camera), p.camera)
+        for p in known
+        if p.camera is not None
+    ]
     given = photo.inputs.intrinsics
     focal = photo.inputs.photo.exif_focal_px if given is None else given.fx
     if focal is None:
         # Photos of one room are usually of one phone: of one size, they have one focal length.
         alike = [p.photo.focal_px for p in placed if p.photo.rgb.shape == photo.inputs.photo.rgb.shape]
         focal = alike[0] if alike else None
-    return registered_camera(UnposedPhoto(photo.name, photo.inputs.photo.rgb, focal), placed, depth_along, progress)
+    return register_camera(UnposedPhoto(photo.name, photo.inputs.photo.rgb, focal), placed, depth_along, progress)
 
 
-def _unposed(name: str, photo: Photo, camera: Camera) -> UnposedPhoto:
+def _make_unposed_photo(name: str, photo: Photo, camera: Camera) -> UnposedPhoto:
     return UnposedPhoto(name, photo.rgb, camera.intrinsics.resize(photo.width, photo.height).fx)

@@ -31,14 +31,14 @@ from diorama_core.multiview.joining import (
     Sighted,
     Track,
     edges_cut_short,
-    joined_objects,
-    shown,
+    join_objects,
+    visibility_score,
     with_agreeing_boxes,
 )
 from diorama_core.multiview.joint_fit import JointCuboid, PosedBoxes
 from diorama_core.multiview.joint_room import SeenRoom, joint_room, with_open_doorways
-from diorama_core.multiview.mounted_walls import hangs_on_wall, room_holding, seen_whole, walls_at_mounted
-from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, moved_to_room, set_into_wall
+from diorama_core.multiview.mounted_walls import hangs_on_wall, is_seen_whole, room_holding, walls_at_mounted
+from diorama_core.multiview.one_scene import acyclic, edge_in_room, filling, move_to_room, set_into_wall
 from diorama_core.multiview.room_pictures import PlacedPicture, room_pictures
 from diorama_core.perception.metrology.box_observations import gather
 from diorama_core.perception.metrology.placement import WALL, place_all
@@ -164,18 +164,18 @@ def build_room(
     for number, photo in enumerate(photos):
         part = progress.part(0.2 * number / len(photos), 0.2 * (number + 1) / len(photos))
         read.append(read_photo(photo, choose(photo.inputs), part))
-    room_photos = [said_alone(r) for r in read]
-    joined = joined_objects(room_photos, progress.part(0.2, 0.45))
+    room_photos = [estimate_room_photo(r) for r in read]
+    joined = join_objects(room_photos, progress.part(0.2, 0.45))
     tracks = tuple(with_agreeing_boxes(t, room_photos) for t in joined)
     single = len(photos) == 1
     rooms = (None,) * len(read) if single else _room_of_all(read, room_photos, tracks, progress.part(0.45, 0.55))
-    room = joined_scene(read, room_photos, tracks, rooms, library, layout, progress.part(0.55, 1.0))
+    room = build_joined_scene(read, room_photos, tracks, rooms, library, layout, progress.part(0.55, 1.0))
     several = sum(len(t.boxes) > 1 for t in tracks)
     notes = (f"{len(photos)} photos: {several} of {len(tracks)} objects are seen in more than one",)
     return replace(room, notes=(*notes, *room.notes))
 
 
-def joined_scene(
+def build_joined_scene(
     read: Sequence[ReadPhoto],
     room_photos: Sequence[RoomPhoto],
     tracks: tuple[Track, ...],
@@ -196,29 +196,31 @@ def joined_scene(
         progress: reports and cancellation.
     """
     single = len(read) == 1
-    best = [max(t.fitted, key=lambda b: (shown(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
+    best = [max(t.inliers, key=lambda b: (visibility_score(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
     used = sorted({0, *best})
     built: dict[int, Built] = {}
     for number, index in enumerate(used):
         part = progress.part(0.65 * number / len(used), 0.65 * (number + 1) / len(used))
-        built[index] = built_alone(read[index], index, tracks, library, part, room=rooms[index], plane_pictures=single)
-    scene, textures = _merged(read, built, tracks, best)
+        built[index] = build_photo_scene(
+            read[index], index, tracks, library, part, room=rooms[index], plane_pictures=single
+        )
+    scene, textures = _merge_scenes(read, built, tracks, best)
     report = None
     if scene.objects:
         scene, report = layout.optimise(scene, progress.part(0.65, 0.9))
         scene = set_metrics(scene, report.after)
     if not single:
         progress.report(0.9, "pictures of floor and walls")
-        placed = [placed_picture(r, _ids_in(tracks, index)) for index, r in enumerate(read)]
+        placed = [to_placed_picture(r, _ids_in(tracks, index)) for index, r in enumerate(read)]
         pictures = room_pictures(scene, placed, library)
         planes = tuple(replace(p, texture=p.id if p.id in pictures else None) for p in scene.architecture.planes)
         scene, textures = replace(scene, architecture=Architecture(planes)), {**textures, **pictures}
     progress.report(1.0, "done")
-    seen = tuple(_seen_in(tracks, index, r, scene) for index, r in enumerate(read))
+    seen = tuple(_visible_objects(tracks, index, r, scene) for index, r in enumerate(read))
     return JoinedRoom(scene, tracks, built[0], textures, report, built[0].notes, seen)
 
 
-def _seen_in(tracks: Sequence[Track], index: int, read: ReadPhoto, scene: Scene) -> tuple[tuple[str, Box], ...]:
+def _visible_objects(tracks: Sequence[Track], index: int, read: ReadPhoto, scene: Scene) -> tuple[tuple[str, Box], ...]:
     """Ids and boxes of the scene's objects that a photo shows."""
     return tuple(
         (track_name(number), read.objects[box].box)
@@ -248,7 +250,7 @@ def photo_world(camera: Camera) -> Float[np.ndarray, "4 4"]:
     return T
 
 
-def said_alone(read: ReadPhoto) -> RoomPhoto:
+def estimate_room_photo(read: ReadPhoto) -> RoomPhoto:
     """What a photo says of its objects by itself, with its camera known."""
     camera = read.camera
     k, R, t = camera.intrinsics, read.T_room_photo[:3, :3], read.T_room_photo[:3, 3]
@@ -280,7 +282,7 @@ def _ids_in(tracks: Sequence[Track], index: int) -> dict[int, str]:
     }
 
 
-def placed_picture(read: ReadPhoto, ids: Mapping[int, str]) -> PlacedPicture:
+def to_placed_picture(read: ReadPhoto, ids: Mapping[int, str]) -> PlacedPicture:
     """A read photo with the ids that its objects have in the scene, by box."""
     named = tuple(replace(item, id=ids.get(k, f"mark-{k}")) for k, item in enumerate(read.objects))
     k = read.posed.camera.intrinsics.resize(read.inputs.photo.width, read.inputs.photo.height)
@@ -288,7 +290,7 @@ def placed_picture(read: ReadPhoto, ids: Mapping[int, str]) -> PlacedPicture:
     return PlacedPicture(read.inputs, named, camera, read.stages.filler)
 
 
-def built_alone(
+def build_photo_scene(
     read: ReadPhoto,
     index: int,
     tracks: Sequence[Track],
@@ -326,7 +328,7 @@ def room_alone(read: ReadPhoto, index: int, tracks: Sequence[Track], progress: P
     stages = _with_joint_cuboids(read, index, tracks)
     artefacts = evaluate(stages, {"given": read.inputs}, ("architecture",), Runner(None), progress)
     architecture: Architecture = artefacts["architecture"].architecture
-    return moved_to_room(Scene(architecture=architecture), read.T_room_photo).architecture
+    return move_to_room(Scene(architecture=architecture), read.T_room_photo).architecture
 
 
 def _room_of_all(
@@ -336,16 +338,16 @@ def _room_of_all(
     seen = []
     for index, r in enumerate(read):
         part = progress.part(index / len(read), (index + 1) / len(read))
-        objects = placed_picture(r, _ids_in(tracks, index)).objects
+        objects = to_placed_picture(r, _ids_in(tracks, index)).objects
         seen.append(SeenRoom(room_alone(r, index, tracks, part), r.posed.camera, objects))
-    standing = [_footprint(t.cuboid) for t in tracks if t.kind.mount == "floor" and len(t.fitted) > 1]
+    standing = [_footprint(t.cuboid) for t in tracks if t.kind.mount == "floor" and len(t.inliers) > 1]
     hanging = [t for t in tracks if _hangs(t, alone)]
-    mounted = [t.cuboid for t in hanging if seen_whole(t.sightings(alone))]
+    mounted = [t.cuboid for t in hanging if is_seen_whole(t.sightings(alone))]
     # A wall that another photo looks past stays where something hangs on it.
     rooms_alone = (room_alone(r, index, _tracks_alone(index, alone[index])) for index, r in enumerate(read))
     whole_room = room_holding(joint_room(seen, standing), rooms_alone, [t.cuboid for t in hanging])
     room, passages = with_open_doorways(walls_at_mounted(whole_room, mounted), seen)
-    worlds = [moved_to_room(Scene(architecture=room), np.linalg.inv(r.T_room_photo)).architecture for r in read]
+    worlds = [move_to_room(Scene(architecture=room), np.linalg.inv(r.T_room_photo)).architecture for r in read]
     return tuple(GivenRoom(world, marks) for world, marks in zip(worlds, passages, strict=True))
 
 
@@ -394,14 +396,14 @@ def _cuboid(name: str, joint: JointCuboid, read: ReadPhoto) -> Cuboid:
     return Cuboid(name, yaw_rotation(yaw), centre, joint.size_m, 1.0 / (1.0 + joint.cost / 20.0))
 
 
-def _merged(
+def _merge_scenes(
     read: Sequence[ReadPhoto],
     built: dict[int, Built],
     tracks: Sequence[Track],
     best: Sequence[int],
 ) -> tuple[Scene, dict[str, UInt8[np.ndarray, "_ _ 3"]]]:
     """All objects in the first photo's room, each from the photo that shows it best."""
-    scenes = {k: moved_to_room(b.scene, read[k].T_room_photo) for k, b in built.items()}
+    scenes = {k: move_to_room(b.scene, read[k].T_room_photo) for k, b in built.items()}
     main = scenes[0]
     objects: list[SceneObject] = []
     textures = dict(built[0].textures)
@@ -413,7 +415,7 @@ def _merged(
             continue  # nothing of the library is like it, or it is an open doorway
         item = scenes[source].object(name)
         in_main = main.object(name) if main.has_object(name) else None
-        if len(track.fitted) > 1:
+        if len(track.inliers) > 1:
             item = filling(item, track.cuboid)
         if item.category in OPENING_CATEGORIES:
             item = set_into_wall(item)

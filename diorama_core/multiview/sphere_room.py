@@ -226,10 +226,10 @@ class _Edges:
         off = azimuth - axis * QUARTER
         tangent = np.cos(off) / reach
         strength = self.edge_strength(azimuth, tangent, -np.sin(off) / reach / (1 + tangent**2))
-        strength[self._hidden(azimuth, np.arctan(tangent))] = 0.0
+        strength[self._occlusion_mask(azimuth, np.arctan(tangent))] = 0.0
         return strength
 
-    def _hidden(
+    def _occlusion_mask(
         self, azimuth: Float[np.ndarray, "..."], elevation: Float[np.ndarray, "..."]
     ) -> Bool[np.ndarray, "..."]:
         """Mask of directions in which a thing is in front of the room, so that edges are its own."""
@@ -265,13 +265,13 @@ def room_on_sphere(level: UInt8[np.ndarray, "h w 3"], things: Sequence[SphereThi
         level: equirectangular, +Z up, the room's axes along x and y (`geometry.sphere`).
         things: what is in the room: its edges are not the room's, and no wall is before it.
     """
-    walls, log_height = _searched(_Edges(level, SETTINGS, things, SETTINGS.coarse_px))
+    walls, log_height = _search_walls(_Edges(level, SETTINGS, things, SETTINGS.coarse_px))
     fine = _Edges(level, SETTINGS, things)
-    walls, log_height = _refined(fine, walls, log_height)
-    return _outlined(fine, walls, log_height)
+    walls, log_height = _refine_walls(fine, walls, log_height)
+    return _outline_room(fine, walls, log_height)
 
 
-def _searched(edges: _Edges) -> tuple[tuple[_Wall, ...], float]:
+def _search_walls(edges: _Edges) -> tuple[tuple[_Wall, ...], float]:
     """The best closed sequence of walls, and the logarithm of the ceiling's height above the camera."""
     step, n = SETTINGS.log_step, SETTINGS.columns
     distances = np.arange(np.log(SETTINGS.nearest), np.log(SETTINGS.farthest), step)
@@ -379,7 +379,7 @@ def _owners(walls: tuple[_Wall, ...], azimuth: Float[np.ndarray, "n"]) -> Int[np
     return (np.searchsorted(starts, np.mod(azimuth - walls[0].begins, 2 * np.pi), side="right") - 1) % len(walls)
 
 
-def _seen_borders(
+def _border_evidence(
     edges: _Edges, walls: tuple[_Wall, ...], log_height: float
 ) -> tuple[Float[np.ndarray, "n"], Int[np.ndarray, "n"]] | None:
     """Evidence at each azimuth, 0 to 1, and which wall is seen there."""
@@ -396,11 +396,11 @@ def _seen_borders(
     return 0.5 * (ceiling + floor), owner
 
 
-def _refined(edges: _Edges, walls: tuple[_Wall, ...], log_height: float) -> tuple[tuple[_Wall, ...], float]:
+def _refine_walls(edges: _Edges, walls: tuple[_Wall, ...], log_height: float) -> tuple[tuple[_Wall, ...], float]:
     """Distances and the ceiling's height, one after the other by ever smaller steps, where the edges are strongest."""
 
     def score(tried: tuple[_Wall, ...], height: float) -> float:
-        seen = _seen_borders(edges, tried, height)
+        seen = _border_evidence(edges, tried, height)
         return -1.0 if seen is None else float(seen[0].mean())
 
     best = score(walls, log_height)
@@ -422,9 +422,9 @@ def _refined(edges: _Edges, walls: tuple[_Wall, ...], log_height: float) -> tupl
     return walls, log_height
 
 
-def _outlined(edges: _Edges, walls: tuple[_Wall, ...], log_height: float) -> SphereRoom:
+def _outline_room(edges: _Edges, walls: tuple[_Wall, ...], log_height: float) -> SphereRoom:
     """The room's corners; where a wall ends before a farther one, a hidden wall leads back from its end."""
-    seen = _seen_borders(edges, walls, log_height)
+    seen = _border_evidence(edges, walls, log_height)
     starts = _starts(walls)
     support = np.zeros(len(walls)) if seen is None else np.bincount(seen[1], seen[0], len(walls))
     if seen is not None:

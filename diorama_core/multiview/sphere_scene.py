@@ -26,15 +26,15 @@ from diorama_core.library.taxonomy import category, is_furniture
 from diorama_core.multiview.joining import RoomPhoto, Track
 from diorama_core.multiview.joint_fit import JointCuboid
 from diorama_core.multiview.joint_room import SeenRoom, with_open_doorways
-from diorama_core.multiview.one_scene import moved_to_room
+from diorama_core.multiview.one_scene import move_to_room
 from diorama_core.multiview.rooms import (
     JoinedRoom,
     PosedInputs,
     ReadPhoto,
-    joined_scene,
-    placed_picture,
+    build_joined_scene,
+    estimate_room_photo,
     read_photo,
-    said_alone,
+    to_placed_picture,
     track_name,
 )
 from diorama_core.multiview.sphere_room import SETTINGS as ROOM
@@ -42,11 +42,11 @@ from diorama_core.multiview.sphere_room import SphereRoom, SphereThing, room_on_
 from diorama_core.multiview.sphere_views import (
     SphereBox,
     SphereView,
-    drawn_on_sphere,
-    found_in_views,
-    marked_views,
+    merge_detections,
     picture_boxes,
+    project_to_views,
     sphere_views,
+    to_sphere_boxes,
     view_photo,
 )
 from diorama_core.perception.metrology.box_observations import gather
@@ -102,7 +102,7 @@ class SphereScene:
         photo, T = inputs.photo, np.eye(4)
         T[:3, :3], T[:3, 3] = self.R_room_sphere, self.views[0].camera.position
         known = {o.id: o for o in self.room.scene.objects}
-        things = [_named(thing, known[name]) if name in known else thing for thing, name in self.things]
+        things = [_relabel(thing, known[name]) if name in known else thing for thing, name in self.things]
         found = picture_boxes(things, (photo.width, photo.height), self.R_room_sphere)
         whole = FurtherPhoto(Path(photo.name).stem, replace(inputs, boxes=inputs.boxes or found), T_world_sphere=T)
         views = zip(self.names[1:], self.views[1:], self.room.seen[1:], strict=True)
@@ -139,17 +139,17 @@ def build_sphere(
     views = sphere_views(photo.width)
     stem = photo.name.rsplit(".", 1)[0]
     pictures = [(v, view_photo(photo.rgb, R, v, f"{stem}-{_degrees(v):03d}.png")) for v in views]
-    things = drawn_on_sphere(boxes, (photo.width, photo.height), R)
+    things = to_sphere_boxes(boxes, (photo.width, photo.height), R)
     if not boxes:
-        things = _found(pictures, choose, progress.part(0.03, 0.12))
+        things = _detect_objects(pictures, choose, progress.part(0.03, 0.12))
     progress.report(0.12, "looking for the room's borders all round")
     border = room_on_sphere(sample(photo.rgb, directions(LEVEL_WIDTH_PX) @ R), occluders(things))
     read, sightings, height_m = _read(pictures, things, border, choose, progress.part(0.15, 0.3), camera_height_m)
-    room_photos = [said_alone(r) for r in read]
+    room_photos = [estimate_room_photo(r) for r in read]
     shown = [(thing, seen) for thing, seen in zip(things, sightings, strict=True) if seen]
     tracks = [_track(seen, room_photos) for _, seen in shown]
     rooms = _rooms(sphere_planes(border, height_m), read, tracks)
-    room = joined_scene(read, room_photos, tuple(tracks), rooms, library, layout, progress.part(0.3, 1.0))
+    room = build_joined_scene(read, room_photos, tuple(tracks), rooms, library, layout, progress.part(0.3, 1.0))
     tilt = float(np.rad2deg(np.arccos(np.clip(R[2, 2], -1.0, 1.0))))
     notes = (
         f"a 360 degree photo: the room has {len(border.outline)} walls, the camera is {height_m:.2f} m above the floor",
@@ -164,7 +164,7 @@ def build_sphere(
     )
 
 
-def _named(thing: SphereBox, item: SceneObject) -> SphereBox:
+def _relabel(thing: SphereBox, item: SceneObject) -> SphereBox:
     """A thing that was found, called what it became."""
     return replace(thing, labelled=replace(thing.labelled, label=item.label, category=item.category, guessed=True))
 
@@ -193,7 +193,7 @@ def _degrees(view: SphereView) -> int:
     return round(-np.rad2deg(view.azimuth)) % 360
 
 
-def _found(
+def _detect_objects(
     pictures: Sequence[tuple[SphereView, Photo]], choose: Callable[[Inputs], Stages], progress: Progress
 ) -> tuple[SphereBox, ...]:
     """Objects that a detector finds in the views."""
@@ -202,7 +202,7 @@ def _found(
         given = Inputs(photo, intrinsics=view.intrinsics)
         part = progress.part(number / len(pictures), (number + 1) / len(pictures))
         rows.append((view, evaluate(choose(given), {"given": given}, ("inputs",), Runner(None), part)["inputs"].boxes))
-    return found_in_views(rows)
+    return merge_detections(rows)
 
 
 def _read(
@@ -214,7 +214,7 @@ def _read(
     camera_height_m: float | None,
 ) -> tuple[list[ReadPhoto], tuple[tuple[tuple[int, int], ...], ...], float]:
     """The views, the one with most things first; where each thing is seen, best first; and the camera's height."""
-    posed, sightings = marked_views(pictures, things, camera_height_m or 1.0)
+    posed, sightings = project_to_views(pictures, things, camera_height_m or 1.0)
     counts = [sum(bool(s) and s[0][0] == number for s in sightings) for number in range(len(posed))]
     first = max(range(len(posed)), key=lambda n: (counts[n], len(posed[n].inputs.boxes)))
     order = [*range(first, len(posed)), *range(first)]
@@ -274,9 +274,9 @@ def _rooms(room: Architecture, read: Sequence[ReadPhoto], tracks: Sequence[Track
     seen = []
     for index, r in enumerate(read):
         ids = {b: track_name(n) for n, track in enumerate(tracks) for v, b in track.boxes if v == index}
-        seen.append(SeenRoom(room, r.posed.camera, placed_picture(r, ids).objects))
+        seen.append(SeenRoom(room, r.posed.camera, to_placed_picture(r, ids).objects))
     whole, passages = with_open_doorways(room, seen)
-    worlds = [moved_to_room(Scene(architecture=whole), np.linalg.inv(r.T_room_photo)).architecture for r in read]
+    worlds = [move_to_room(Scene(architecture=whole), np.linalg.inv(r.T_room_photo)).architecture for r in read]
     return tuple(GivenRoom(world, marks) for world, marks in zip(worlds, passages, strict=True))
 
 
@@ -335,7 +335,7 @@ def room_axes(lines: SphereLines) -> Float[np.ndarray, "3 3"]:
     """
     if not len(lines.weights):
         return np.eye(3)
-    R = _with_yaw(lines, _levelled(lines))
+    R = _with_yaw(lines, _levelling_rotation(lines))
     sigma = np.sin(np.deg2rad(FRAME_SETTINGS.sigma_deg))
     for _ in range(FRAME_SETTINGS.rounds):
         # A small turn w moves an axis a by w x a: the sine n . a changes by w . (a x n).
@@ -349,7 +349,7 @@ def room_axes(lines: SphereLines) -> Float[np.ndarray, "3 3"]:
     return R
 
 
-def _levelled(lines: SphereLines) -> Float[np.ndarray, "3 3"]:
+def _levelling_rotation(lines: SphereLines) -> Float[np.ndarray, "3 3"]:
     """The least turn that makes upright lines upright."""
     reach = np.deg2rad(
         np.arange(-FRAME_SETTINGS.max_tilt_deg, FRAME_SETTINGS.max_tilt_deg + 1e-6, FRAME_SETTINGS.coarse_deg)

@@ -70,7 +70,7 @@ class SphereBox:
         return np.array([middle - self.half_width, self.low, middle + self.half_width, self.high])
 
 
-def drawn_on_sphere(
+def to_sphere_boxes(
     boxes: Sequence[LabelledBox], size: tuple[int, int], R_room_sphere: Float[np.ndarray, "3 3"]
 ) -> tuple[SphereBox, ...]:
     """Boxes of an equirectangular picture, those that meet across its seam as one.
@@ -146,7 +146,7 @@ class SphereView:
         T[:3, :3], T[2, 3] = level_axes(self.azimuth), height_m
         return Camera(self.intrinsics, T)
 
-    def shown(self, thing: SphereBox) -> LabelledBox | None:
+    def project(self, thing: SphereBox) -> LabelledBox | None:
         """A thing's box in the view; None where too little of it is there."""
         k, off = self.intrinsics, thing.azimuth_from(self.azimuth)
         if thing.half_width > np.deg2rad(SETTINGS.widest_deg) / 2:
@@ -198,7 +198,7 @@ def view_photo(
     return Photo(picture, name, (k.width, k.height))
 
 
-def found_in_views(boxes_by_view: Sequence[tuple[SphereView, Sequence[LabelledBox]]]) -> tuple[SphereBox, ...]:
+def merge_detections(boxes_by_view: Sequence[tuple[SphereView, Sequence[LabelledBox]]]) -> tuple[SphereBox, ...]:
     """Things that were found in views, each once: as the view has it that shows it whole, and nearest its middle."""
     rows = []
     for view, boxes in boxes_by_view:
@@ -223,7 +223,7 @@ def _is_same(a: SphereBox, b: SphereBox) -> bool:
     return bool(box_iou(one, two) > SETTINGS.same_box or both > SETTINGS.inside * smaller)
 
 
-def marked_views(
+def project_to_views(
     photos: Sequence[tuple[SphereView, Photo]], things: Sequence[SphereBox], height_m: float
 ) -> tuple[tuple[PosedInputs, ...], tuple[tuple[tuple[int, int], ...], ...]]:
     """Views with the things that they show, and for each thing its (view, box), the view that shows it best first.
@@ -238,7 +238,7 @@ def marked_views(
     for number, (view, photo) in enumerate(photos):
         boxes: list[LabelledBox] = []
         for thing, seen in zip(things, sightings, strict=True):
-            box = view.shown(thing)
+            box = view.project(thing)
             if box is not None:
                 seen.append((number, len(boxes)))
                 boxes.append(box)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from diorama_core.architecture.along_sight import drawn_before_walls, snap_mounted_objects
+from diorama_core.architecture.along_sight import move_in_front_of_walls, snap_mounted_objects
 from diorama_core.architecture.walls.passages import without_openings
 from diorama_core.arrangement.explain import SCALE, reasons_of_change
 from diorama_core.arrangement.out_of_reach import left_where_seen
@@ -261,7 +261,7 @@ PLAN: tuple[Step, ...] = (
     StageStep("graph", "relate", ("inputs", "objects", "measured_geometry"), "graph", 0.02),
     Derivation(with_graph, ("measured_geometry", "graph"), "supported_geometry"),
     StageStep("architecture", "reconstruct", ("inputs", "objects", "supported_geometry"), "architecture", 0.1),
-    Derivation(drawn_before_walls, ("supported_geometry", "architecture"), "standing_geometry"),
+    Derivation(move_in_front_of_walls, ("supported_geometry", "architecture"), "standing_geometry"),
     Derivation(snap_mounted_objects, ("standing_geometry", "architecture"), "mounted_geometry"),
     Derivation(without_openings, ("objects", "mounted_geometry", "architecture"), "furniture"),
     Derivation(lambda furniture: furniture[0], ("furniture",), "furniture_objects"),

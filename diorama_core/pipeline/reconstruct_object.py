@@ -216,7 +216,7 @@ def _build_object(
     objects = (detected, *(o for o in photo["objects"] if o.id != detected.id))
     shown = {**one, "furniture_objects": objects, "observed": Scene(camera=scene.camera, objects=(item,))}
     look = evaluate(stages, shown, ("appearance",), Runner(None))["appearance"]
-    item = look.applied(shown["observed"]).objects[0]
+    item = look.apply(shown["observed"]).objects[0]
     return Found(item, _edge(scene, item, parent), look.pictures, as_built)
 
 

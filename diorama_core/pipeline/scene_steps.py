@@ -11,7 +11,7 @@ from jaxtyping import UInt8
 from diorama_core.appearance.photo_appearance import PhotoAppearance, photo_appearance
 from diorama_core.architecture.room_extent import containing_room, without_floor_behind_walls
 from diorama_core.architecture.texture.plane_textures import plane_textures
-from diorama_core.architecture.texture.refit import refitted_textures
+from diorama_core.architecture.texture.refit import refit_textures
 from diorama_core.arrangement.explain import SCALE, reasons_of_change
 from diorama_core.arrangement.support_hypotheses import (
     MEASURED,
@@ -219,7 +219,7 @@ def refine_layout(
 
 def apply_appearance(scene: Scene, look: PhotoAppearance, of_planes: Pictures) -> Scene:
     """The scene with the photo's materials, whose planes show the pictures that there are, by plane id."""
-    scene = look.applied(scene)
+    scene = look.apply(scene)
     planes = tuple(replace(p, texture=p.id if p.id in of_planes else None) for p in scene.architecture.planes)
     return replace(scene, architecture=replace(scene.architecture, planes=planes))
 
@@ -240,7 +240,7 @@ def finish_scene(
     scene, textures = apply_appearance(scene, look, of_planes), dict(of_planes)
     if room.architecture.floor is not None:
         trimmed = without_floor_behind_walls(scene, room.architecture.floor)
-        scene, cut = refitted_textures(scene, trimmed, textures)
+        scene, cut = refit_textures(scene, trimmed, textures)
         textures |= cut
     return FinishedScene(_rescale_to_height(scene, inputs.camera_height_m), textures | dict(look.pictures))
 

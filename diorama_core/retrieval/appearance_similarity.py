@@ -32,7 +32,7 @@ from diorama_core.render.view_features import (
     paint_views,
 )
 from diorama_core.retrieval.feature_cache import cached_features, has_features
-from diorama_core.retrieval.outlines import filled, open_share
+from diorama_core.retrieval.outlines import close_gaps, open_share
 from diorama_core.retrieval.settings import SETTINGS, SimilaritySettings
 from diorama_core.scene.values import ArrayValue
 
@@ -161,7 +161,7 @@ def _feature(rgb: UInt8[np.ndarray, "h w 3"], mask: Bool[np.ndarray, "h w"]) -> 
     """Outline and inner edges of a picture as it is outlined, and with the outline's gaps filled (what shows through
     is an edge), each of unit length; then where its colours are. None for an empty mask."""
     gray = cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
-    form = [outline_and_edges(gray, m) for m in (mask, filled(mask))]
+    form = [outline_and_edges(gray, m) for m in (mask, close_gaps(mask))]
     if form[0] is None or form[1] is None:
         return None
     return np.concatenate([*form[0], *form[1], colour_layout(rgb, mask)]).astype(np.float64)

@@ -220,11 +220,11 @@ def _distances(
     view: BoxView, carrier: BoxView, entry: Category, height: Float[np.ndarray, "h"]
 ) -> Float[np.ndarray, "d"]:
     """How likely what lies on a carrier of one kind is at every distance, times how well its foot is level with it."""
-    priors = [_carried_likelihood(view, carrier, entry, prior) for prior in entry.priors]
+    priors = [_lying_likelihood(view, carrier, entry, prior) for prior in entry.priors]
     return np.asarray(height @ np.mean(priors, axis=0))
 
 
-def _carried_likelihood(view: BoxView, carrier: BoxView, entry: Category, prior: SizePrior) -> Float[np.ndarray, "h d"]:
+def _lying_likelihood(view: BoxView, carrier: BoxView, entry: Category, prior: SizePrior) -> Float[np.ndarray, "h d"]:
     likely = place_density(carrier, prior, entry.mount) * size_density(carrier, prior, entry.mount)
     likely = likely / np.maximum(likely.sum(axis=1, keepdims=True), 1e-12)
     likely = (1.0 - SETTINGS.anywhere) * likely + SETTINGS.anywhere / len(DISTANCES_M)

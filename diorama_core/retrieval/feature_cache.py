@@ -36,11 +36,11 @@ def cached_features(
         return make().astype(np.float16)
     path = _path(kind, shape, folder)
 
-    def found_or_made() -> np.ndarray:
+    def read_or_make() -> np.ndarray:
         features = _read(path)
-        return _written(path, make().astype(np.float16)) if features is None else features
+        return _write(path, make().astype(np.float16)) if features is None else features
 
-    return _CACHE.get(str(path), found_or_made)
+    return _CACHE.get(str(path), read_or_make)
 
 
 def has_features(kind: str, shape: Shape, folder: Path | None = None) -> bool:
@@ -63,7 +63,7 @@ def _read(path: Path) -> np.ndarray | None:
     return values if values.ndim == 2 and values.dtype == np.float16 else None
 
 
-def _written(path: Path, values: np.ndarray) -> np.ndarray:
+def _write(path: Path, values: np.ndarray) -> np.ndarray:
     data = BytesIO()
     np.save(data, values)
     write_derived(path, data.getvalue())

@@ -30,7 +30,7 @@ from diorama_core.retrieval.appearance_similarity import (
 from diorama_core.retrieval.neighbours import with_neighbours
 from diorama_core.retrieval.outlines import outline_agreement, whole_outline
 from diorama_core.retrieval.pools import Pool, RetrievalQuery, pool_for, size_cost
-from diorama_core.retrieval.seen_forms import seen_form_factor, shape_form
+from diorama_core.retrieval.seen_forms import form_likelihood_factor, shape_form
 from diorama_core.retrieval.seen_kinds import as_measured
 from diorama_core.retrieval.settings import SETTINGS, RankingSettings, RetrievalSettings
 from diorama_core.retrieval.usual_forms import usual_form_factor
@@ -200,7 +200,7 @@ class HierarchicalRetrieval:
         appearance = self._appearance(shape)
         seen, settings = 1.0, self.settings.forms
         if item.seen_form:
-            seen = seen_form_factor(shape_form(self.library, shape, appearance), item.seen_form, settings)
+            seen = form_likelihood_factor(shape_form(self.library, shape, appearance), item.seen_form, settings)
         if described or item.mask_confidence >= 1.0:
             return seen
         return seen * usual_form_factor(self.library, shape, appearance, settings)
@@ -355,13 +355,13 @@ def _best(
     """
     share, kinds = settings.own_evidence, settings.kinds if named else settings.kinds_of_unnamed
     mixed = {key: share * scores[key] + (1 - share) * of_group[key] for key in scores}
-    shared = _ranked_keys(of_group)[: 3 * keep // 4]
-    keys = [*shared, *(key for key in _ranked_keys(mixed) if key not in shared)][:keep]
-    of_kinds = {kind_of[key]: key for key in reversed(_ranked_keys(mixed))}
-    firsts = _ranked_keys({key: mixed[key] for key in of_kinds.values()})[:kinds]
+    shared = _rank_keys(of_group)[: 3 * keep // 4]
+    keys = [*shared, *(key for key in _rank_keys(mixed) if key not in shared)][:keep]
+    of_kinds = {kind_of[key]: key for key in reversed(_rank_keys(mixed))}
+    firsts = _rank_keys({key: mixed[key] for key in of_kinds.values()})[:kinds]
     keys = [*firsts, *(key for key in keys if key not in firsts)][:keep]
-    return tuple((key, float(mixed[key])) for key in _ranked_keys({key: mixed[key] for key in keys}))
+    return tuple((key, float(mixed[key])) for key in _rank_keys({key: mixed[key] for key in keys}))
 
 
-def _ranked_keys(scores: dict[str, float]) -> list[str]:
+def _rank_keys(scores: dict[str, float]) -> list[str]:
     return sorted(scores, key=lambda key: (-scores[key], key))

@@ -145,10 +145,10 @@ def shape_vectors(
     """
     kind = f"joint-{hashlib.sha256(embedding.weights.encode()).hexdigest()[:16]}-{len(_VIEWS)}"
 
-    def made(shape: Shape) -> Float32[np.ndarray, "1 d"]:
+    def embed(shape: Shape) -> Float32[np.ndarray, "1 d"]:
         return embedding.shape(library, shape)[None]
 
-    return np.stack([cached_features(kind, s, partial(made, s), folder)[0] for s in shapes]).astype(np.float32)
+    return np.stack([cached_features(kind, s, partial(embed, s), folder)[0] for s in shapes]).astype(np.float32)
 
 
 def studio_views(library: ShapeLibrary, shape: Shape) -> list[UInt8[np.ndarray, "_ _ 3"]]:

@@ -54,16 +54,18 @@ def with_neighbours(
         }
         for i in indices
     ]
-    beliefs = [_normalised(kinds) for kinds in alone]
+    beliefs = [_normalise(kinds) for kinds in alone]
     for _ in range(settings.neighbour_rounds):
         beliefs = [
-            _updated(alone[i], {where: [beliefs[j] for j in of_one] for where, of_one in neighbours_of[i].items()})
+            _update_belief(
+                alone[i], {where: [beliefs[j] for j in of_one] for where, of_one in neighbours_of[i].items()}
+            )
             for i in indices
         ]
     return beliefs
 
 
-def _updated(
+def _update_belief(
     alone: Mapping[str, float], neighbours: Mapping[Relation, Sequence[Mapping[str, float]]]
 ) -> Mapping[str, float]:
     """One object's belief, by itself and by what is on it and near it."""
@@ -73,7 +75,7 @@ def _updated(
             present = _any(with_kin(*row.others), neighbours[row.where])
             factor = present * row.often / row.usual + (1.0 - present) * (1.0 - row.often) / (1.0 - row.usual)
             likely[kind] *= factor
-    return _normalised(likely)
+    return _normalise(likely)
 
 
 def _any(kinds: frozenset[str], beliefs: Sequence[Mapping[str, float]]) -> float:
@@ -82,7 +84,7 @@ def _any(kinds: frozenset[str], beliefs: Sequence[Mapping[str, float]]) -> float
     return 1.0 - prod(none)  # sorted: the order of the objects must not show in a bit
 
 
-def _normalised(likely: Mapping[str, float]) -> Mapping[str, float]:
+def _normalise(likely: Mapping[str, float]) -> Mapping[str, float]:
     whole = fsum(likely.values())
     return {kind: value / whole for kind, value in likely.items()}
 

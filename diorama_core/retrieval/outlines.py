@@ -16,7 +16,7 @@ _GAP_SHARE = 0.12
 """Share of an object's longer side: wider gaps stay open."""
 
 
-def filled(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+def close_gaps(mask: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     """The mask with narrow gaps and small holes closed."""
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     if not len(rows):
@@ -40,7 +40,7 @@ def _ellipse(size: int) -> UInt8[np.ndarray, "s s"]:
 def whole_outline(seen: Observed) -> Float[np.ndarray, " n"]:
     """An object's cells with the gaps of its mask filled."""
     side = seen.window.cells
-    return np.maximum(seen.covered, filled((seen.covered > 0.5).reshape(side, side)).ravel())
+    return np.maximum(seen.covered, close_gaps((seen.covered > 0.5).reshape(side, side)).ravel())
 
 
 def open_share(mask_trust: float, settings: SimilaritySettings = SETTINGS.similarity) -> float:
@@ -64,5 +64,5 @@ def outline_agreement(
     """
     side = round(np.sqrt(silhouettes.shape[1]))
     share = open_share(seen.mask_trust, settings)
-    closed = np.stack([filled(s.reshape(side, side)).ravel() for s in silhouettes]).astype(np.float64)
+    closed = np.stack([close_gaps(s.reshape(side, side)).ravel() for s in silhouettes]).astype(np.float64)
     return share * seen.agreement(silhouettes) + (1 - share) * soft_iou(whole, closed, seen.weight)

@@ -22,7 +22,7 @@ RELATED: Mapping[str, tuple[str, ...]] = column("related")
 """Near kinds of each broad category, nearest first."""
 
 
-def related_kinds(name: str, settings: PoolSettings = SETTINGS.pools) -> tuple[str, ...]:
+def near_kinds(name: str, settings: PoolSettings = SETTINGS.pools) -> tuple[str, ...]:
     """Near kinds of a category, nearest first.
 
     A special kind has its broad category and that one's near kinds; a category without a row in `RELATED` those that
@@ -88,7 +88,7 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSetting
             members += [Pooled(shape, sense_factor(share / best, settings)) for shape in near_shapes]
     is_known = bool(members)
     factor = settings.related_factor
-    for near in related_kinds(query.category, settings):
+    for near in near_kinds(query.category, settings):
         if len(members) >= settings.enough:
             break
         near_shapes = _nearest(

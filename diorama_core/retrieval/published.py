@@ -24,7 +24,7 @@ from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.retrieval.appearance_similarity import AppearanceSimilarity, EmbeddedSimilarity, ObjectCrop
 from diorama_core.retrieval.joint import PROMPT, JointEmbedding, shape_vectors
-from diorama_core.retrieval.pools import related_kinds
+from diorama_core.retrieval.pools import near_kinds
 
 By = Literal["words", "picture", "words and picture"]
 
@@ -61,10 +61,10 @@ class TextThenPicture:
         for index, item in enumerate(objects):
             if item.id in placed:
                 progress.report(index / len(objects), f"Looking for shapes: {item.label}")
-                rankings.append(RankedShapes(item.id, self._ranked(inputs, item, shapes, known)))
+                rankings.append(RankedShapes(item.id, self._rank(inputs, item, shapes, known)))
         return tuple(rankings)
 
-    def _ranked(
+    def _rank(
         self, inputs: Inputs, item: DetectedObject, shapes: tuple[Shape, ...], known: Float32[np.ndarray, "n d"]
     ) -> tuple[tuple[str, float], ...]:
         """Shapes with their cosines, best first; what cannot be seen is found by its words."""
@@ -108,7 +108,7 @@ class MatchedByLooks:
                 continue
             progress.report(index / len(objects), f"Looking for shapes: {item.label}")
             shapes = list(self.library.in_category(item.category))
-            related = related_kinds(item.category)[: self.kinds] if not shapes else ()
+            related = near_kinds(item.category)[: self.kinds] if not shapes else ()
             shapes += [s for kind in related for s in self.library.in_category(kind)]
             crop = ObjectCrop(inputs.photo.rgb, item.mask, item.label, 1.0, 1.0)
             alike = similarity.similarities(crop, shapes)

@@ -34,13 +34,13 @@ def shape_form(
         folder: cache folder of features; `features` in Diorama's cache folder by default.
     """
 
-    def found() -> Float[np.ndarray, "1 n"]:
+    def measure() -> Float[np.ndarray, "1 n"]:
         mesh = trimesh.Trimesh(appearance.vertices, appearance.faces, process=False)
         slots = slots_of(library.parts(shape.id))
         form = form_of(shape.id, shape.category, mesh, np.asarray(shape.size_m), slots)
         return value_indices(form)[None].astype(float)
 
-    indices = cached_features(FORM_FEATURES, shape, found, folder)[0].astype(int).tolist()
+    indices = cached_features(FORM_FEATURES, shape, measure, folder)[0].astype(int).tolist()
     return {name: VALUES[name][k] for name, k in zip(MEASURED, indices, strict=True) if 0 <= k < len(VALUES[name])}
 
 
@@ -49,7 +49,7 @@ def has_form(shape: Shape, folder: Path | None = None) -> bool:
     return has_features(FORM_FEATURES, shape, folder)
 
 
-def seen_form_factor(
+def form_likelihood_factor(
     form: Mapping[str, str | int], seen_form: Sequence[float], settings: UsualFormSettings = SETTINGS.forms
 ) -> float:
     """What a shape's score is multiplied by: above 1 for forms that are likelier than what was to be expected.

@@ -94,7 +94,7 @@ def _form(
     if (
         base == "four legs"
         and shape.category == "chair"
-        and _kept(LEGS_FEATURES, shape, lambda: _cross(appearance, settings))
+        and _get_or_compute(LEGS_FEATURES, shape, lambda: _cross(appearance, settings))
     ):
         base = _CROSSED_LEGS
     return base, str(form.get("top", "none"))
@@ -124,28 +124,28 @@ def _outline(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSetti
         )
         return whole and cv2.contourArea(outline) >= FULL_RECTANGLE * around
 
-    return "rectangular" if _kept(OUTLINE_FEATURES, shape, is_rectangular) else "other"
+    return "rectangular" if _get_or_compute(OUTLINE_FEATURES, shape, is_rectangular) else "other"
 
 
 def _side(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> str:
     """Whether a seat is seen through from the side."""
 
     def is_closed() -> bool:
-        drawn = _drawn(appearance, [0, 2], settings)
+        drawn = _draw_outline(appearance, [0, 2], settings)
         around = cv2.contourArea(cv2.convexHull(np.argwhere(drawn).astype(np.int32)))
         return float(drawn.sum()) >= settings.closed * around
 
-    return "closed" if _kept(SIDE_FEATURES, shape, is_closed) else "open"
+    return "closed" if _get_or_compute(SIDE_FEATURES, shape, is_closed) else "open"
 
 
-def _kept(kind: str, shape: Shape, make: Callable[[], bool]) -> bool:
+def _get_or_compute(kind: str, shape: Shape, make: Callable[[], bool]) -> bool:
     """An answer about a shape: from memory, from disk, or found now."""
     return bool(cached_features(kind, shape, lambda: np.array([[float(make())]]))[0, 0])
 
 
 def _pieces(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> int:
     """How many separate pieces are seen from the front: a row of prints is several."""
-    return int(cv2.connectedComponents(_drawn(appearance, [1, 2], settings))[0]) - 1
+    return int(cv2.connectedComponents(_draw_outline(appearance, [1, 2], settings))[0]) - 1
 
 
 def _panes(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> int:
@@ -161,7 +161,7 @@ def _panes(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.f
     return int((areas >= settings.min_pane * (drawn > 0).sum()).sum())
 
 
-def _drawn(
+def _draw_outline(
     appearance: ShapeAppearance, axes: list[int], settings: UsualFormSettings = SETTINGS.forms
 ) -> UInt8[np.ndarray, "p p"]:
     """The outline along the remaining axis, 1 where there is something, stretched to a square."""

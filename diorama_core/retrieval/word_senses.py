@@ -59,12 +59,12 @@ def with_word_senses(objects: tuple[DetectedObject, ...], camera: CameraEstimate
     best = camera.best
     senses = sense_probabilities(objects, best.intrinsics, best.R_world_camera, camera.height_m)
     return tuple(
-        replace(item, category=_chosen(item, of_word), meanings=_listed(of_word))
+        replace(item, category=_choose_kind(item, of_word), meanings=_list_senses(of_word))
         for item, of_word in zip(objects, senses, strict=True)
     )
 
 
-def _listed(senses: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
+def _list_senses(senses: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
     """Several senses, likeliest first."""
     return tuple(sorted(senses.items(), key=lambda pair: (-pair[1], pair[0]))) if len(senses) > 1 else ()
 
@@ -85,7 +85,7 @@ def sense_probabilities(
     """
     below = carriers([item.box for item in objects])
     views = [
-        box_view(item.box, _carried(item, objects, on), intrinsics, R_world_camera)
+        box_view(item.box, _lying_probability(item, objects, on), intrinsics, R_world_camera)
         for item, on in zip(objects, below, strict=True)
     ]
     senses = [
@@ -135,7 +135,7 @@ def _as_lying(
     return lying
 
 
-def _chosen(item: DetectedObject, senses: Mapping[str, float]) -> str:
+def _choose_kind(item: DetectedObject, senses: Mapping[str, float]) -> str:
     detected_kind, named = item.category, is_named(item.label)
     if detected_kind == UNKNOWN.name or (named and not names_a_kind(item.label)):
         best = max(senses, key=lambda kind: senses[kind])
@@ -151,7 +151,7 @@ def _chosen(item: DetectedObject, senses: Mapping[str, float]) -> str:
     return best if mount != category(detected_kind).mount or senses[best] > SETTINGS.majority else detected_kind
 
 
-def _carried(item: DetectedObject, objects: Sequence[DetectedObject], inside: int | None) -> float:
+def _lying_probability(item: DetectedObject, objects: Sequence[DetectedObject], inside: int | None) -> float:
     if any(_stands_on(other.box, item.box) for other in objects if other is not item):
         return 1.0
     return SETTINGS.unsupported if inside is None else SETTINGS.inside

@@ -35,7 +35,7 @@ def words_factor(
         shapes: Of the library.
         settings: Numbers to work with.
     """
-    share = described_share(library, label, category, shapes, settings)
+    share = description_share(library, label, category, shapes, settings)
     penalty = settings.other_noun if nouns_of_few(library, label, category, settings) else settings.other_words
     return 1.0 - penalty * (1.0 - share), share
 
@@ -64,7 +64,7 @@ def _is_loose(noun: str, several: int) -> bool:
     return noun in _KINDS or len(MEANINGS.get(noun, {})) >= several
 
 
-def described_share(
+def description_share(
     library: ShapeLibrary,
     label: str,
     category: str,

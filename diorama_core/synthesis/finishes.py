@@ -38,7 +38,7 @@ WALLS: dict[str, tuple[str, ...]] = {
 PATTERNS = {
     "planks": patterns.planks, "parquet": patterns.parquet, "tiles": patterns.tiles, "checker": patterns.checker,
     "carpet": patterns.carpet, "paint": patterns.paint, "paper": patterns.paper, "brick": patterns.brick,
-    "panelled": patterns.panelled,
+    "panelled": patterns.panelling,
 }  # fmt: skip
 
 TEXTURE_VALIDATION = 0.2

@@ -7,10 +7,10 @@ import pytest
 from diorama_core.appearance.flat_faces import (
     FACES,
     box_alignment,
-    completed_picture,
+    complete_picture,
     face_kind,
+    fill_from_mirror_images,
     is_lit,
-    mirrored,
     pale_frame,
     sides_told,
 )
@@ -103,7 +103,7 @@ def test_a_symmetric_picture_is_filled_from_its_other_side() -> None:
     seen = np.ones(whole.shape[:2], dtype=bool)
     seen[30:90, 200:290] = False
     broken = np.where(seen[..., None], whole, 0).astype(np.float32)
-    filled, known = mirrored(broken, seen)
+    filled, known = fill_from_mirror_images(broken, seen)
     assert known.all()
     assert np.abs(filled - whole).mean() < 1.0
 
@@ -112,7 +112,7 @@ def test_another_picture_is_not_mirrored() -> None:
     whole = patterned()
     seen = np.ones(whole.shape[:2], dtype=bool)
     seen[30:90, 100:150] = False
-    _, known = mirrored(whole, seen)
+    _, known = fill_from_mirror_images(whole, seen)
     np.testing.assert_array_equal(known, seen)
 
 
@@ -121,6 +121,6 @@ def test_what_was_seen_stays_and_the_rest_is_about_its_colour() -> None:
     whole = (np.array([150, 110, 80]) + rng.normal(0, 6, (120, 160, 3))).astype(np.float32)
     seen = np.ones((120, 160), dtype=bool)
     seen[:, 110:] = False
-    picture = completed_picture(Rectified(np.where(seen[..., None], whole, 255).astype(np.float32), seen), 0.01)
+    picture = complete_picture(Rectified(np.where(seen[..., None], whole, 255).astype(np.float32), seen), 0.01)
     assert np.abs(picture[:, :100].astype(float) - whole[:, :100]).max() < 2
     assert np.abs(picture[:, 120:].reshape(-1, 3).mean(axis=0) - [150, 110, 80]).max() < 12

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from diorama_core.appearance.lit_colour import is_glossed, is_shade, unveiled
+from diorama_core.appearance.lit_colour import is_glossed, is_shade, select_material_colour
 from diorama_core.io.srgb import linear_to_srgb
 
 
@@ -21,19 +21,19 @@ RED, BLUE = lab(0.4, 0.05, 0.04), lab(0.04, 0.06, 0.3)
 
 def test_a_shade_gives_way_to_the_lit_colour() -> None:
     assert is_shade(GREY, WHITE)
-    np.testing.assert_array_equal(unveiled(GREY, [GREY, WHITE]), WHITE)
-    np.testing.assert_array_equal(unveiled(WHITE, [GREY]), WHITE)
+    np.testing.assert_array_equal(select_material_colour(GREY, [GREY, WHITE]), WHITE)
+    np.testing.assert_array_equal(select_material_colour(WHITE, [GREY]), WHITE)
 
 
 def test_gloss_gives_way_to_the_bare_colour() -> None:
     assert is_glossed(GLOSSY, WALNUT)
-    np.testing.assert_array_equal(unveiled(GLOSSY, [WALNUT]), WALNUT)
-    np.testing.assert_array_equal(unveiled(WALNUT, [GLOSSY]), WALNUT)
+    np.testing.assert_array_equal(select_material_colour(GLOSSY, [WALNUT]), WALNUT)
+    np.testing.assert_array_equal(select_material_colour(WALNUT, [GLOSSY]), WALNUT)
 
 
 def test_other_colours_are_neither() -> None:
     for one, other in ((RED, BLUE), (BLUE, RED), (WALNUT, WHITE), (RED, WHITE)):
         assert not is_shade(one, other)
-        np.testing.assert_array_equal(unveiled(one, [other]), one)
+        np.testing.assert_array_equal(select_material_colour(one, [other]), one)
     assert not is_glossed(WHITE, GREY)
     assert not is_glossed(WHITE, BLUE)

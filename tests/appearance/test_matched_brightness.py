@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from diorama_core.appearance.matched_brightness import brightened, brightness_gains
+from diorama_core.appearance.matched_brightness import brighten, brightness_gains
 from diorama_core.appearance.photo_appearance import photo_appearance
 from diorama_core.appearance.room_cues import SETTINGS
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
@@ -63,7 +63,7 @@ def test_colours_and_pictures_are_scaled_and_sets_stay_alike() -> None:
     cloth = PhotoMaterial("fabric", (0.3, 0.4, 0.35), "chair-1-fabric-00000000", main=True)
     white = PhotoMaterial("paint", (0.95, 0.95, 0.95), main=True)
     materials = {"chair_1": (cloth,), "chair_2": (cloth,), "vase_1": (white,), "cup_1": (white,)}
-    made, pictures = brightened(
+    made, pictures = brighten(
         materials, {cloth.texture: plaid}, {"chair_1": 1.44, "chair_2": 1.0, "vase_1": 1.5}, [["chair_1", "chair_2"]]
     )
     assert made["chair_1"] == made["chair_2"]
@@ -82,6 +82,6 @@ def test_the_photos_look_is_as_bright_as_the_photo() -> None:
     photo, found = picture(seen, LIBRARY, size=SIZE), detected(seen)
     plain = replace(seen, objects=(replace(seen.objects[0], photo_materials=()),))
     look = photo_appearance(photo, found, plain, LIBRARY)
-    shown = picture(look.applied(plain), LIBRARY, size=SIZE, textures=look.pictures)
+    shown = picture(look.apply(plain), LIBRARY, size=SIZE, textures=look.pictures)
     level = [float(srgb_to_linear(p[found[0].mask] / 255.0).mean()) for p in (photo, shown)]
     assert level[1] == pytest.approx(level[0], rel=0.08)

@@ -8,7 +8,7 @@ from diorama_core.appearance.patterns import Swatch
 
 PAINTERS = (
     patterns.planks, patterns.parquet, patterns.tiles, patterns.checker, patterns.carpet, patterns.paint,
-    patterns.paper, patterns.brick, patterns.panelled, patterns.plaster, patterns.stripes, patterns.dots,
+    patterns.paper, patterns.brick, patterns.panelling, patterns.plaster, patterns.stripes, patterns.dots,
     patterns.leaves, patterns.herringbone,
 )  # fmt: skip
 COLOUR = np.array([0.6, 0.5, 0.4])

@@ -60,7 +60,7 @@ def test_a_picture_wears_the_photo(photo) -> None:
     want = cv2.resize(art(), found.shape[1::-1], interpolation=cv2.INTER_AREA).astype(float)
     assert material.layout == "front"
     assert np.corrcoef(found.ravel().astype(float), want.ravel())[0, 1] > 0.97
-    seen = picture(look.applied(scene), LIBRARY, size=SIZE, textures=look.pictures)
+    seen = picture(look.apply(scene), LIBRARY, size=SIZE, textures=look.pictures)
     plain = picture(scene, LIBRARY, size=SIZE)
     mask = detected(scene)[0].mask
     off = [float(np.abs(p.astype(float) - photo)[mask].mean()) for p in (seen, plain)]
@@ -85,7 +85,7 @@ def test_a_print_too_small_to_be_read_gives_way_to_its_colour() -> None:
 def test_another_shape_takes_the_look(photo) -> None:
     scene = hung("picture-hills-oak", worn=False)
     look = photo_appearance(photo, detected(scene), scene, LIBRARY)
-    worn = look.applied(scene)
+    worn = look.apply(scene)
     other = LIBRARY.shape("picture-portrait")
     swapped = replace(worn.objects[0], shape_id=other.id, shape_size_m=other.size_m)
     shown = picture(replace(worn, objects=(swapped,)), LIBRARY, size=SIZE, textures=look.pictures)
@@ -121,7 +121,7 @@ def test_other_books_wear_the_spines_of_the_photo() -> None:
     other = row("books-row")
     look = photo_appearance(seen, detected(row("books-row-long")), other, LIBRARY)
     assert sum(m.layout == "front" for m in look.materials["books_1"]) >= 5
-    worn = picture(look.applied(other), LIBRARY, size=SIZE, textures=look.pictures)
+    worn = picture(look.apply(other), LIBRARY, size=SIZE, textures=look.pictures)
     plain = picture(other, LIBRARY, size=SIZE)
     mask = detected(other)[0].mask & detected(row("books-row-long"))[0].mask
     off = [float(np.abs(p.astype(float) - seen)[mask].mean()) for p in (worn, plain)]

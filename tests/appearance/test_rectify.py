@@ -5,7 +5,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.appearance.rectify import face_homography, outline_px, rectified
+from diorama_core.appearance.rectify import face_homography, outline_px, rectify
 from diorama_core.geometry.projection import NEAR_M
 from diorama_core.scene.types import Camera, Intrinsics
 
@@ -70,7 +70,7 @@ def test_a_rug_is_read_where_it_lies_before_the_camera_and_nowhere_else(
     axes = np.stack([corners[1] - corners[0], corners[3] - corners[0]], axis=1)
     uv = (ground - corners[0]) @ axes / (axes**2).sum(axis=0)
     photo = np.nan_to_num(art_at(uv)).clip(0, 255).astype(np.uint8)
-    found = rectified(photo, np.zeros((150, 200), dtype=bool), H)
+    found = rectify(photo, np.zeros((150, 200), dtype=bool), H)
     if found is None:
         return
     rows, columns = found.seen.shape
@@ -100,7 +100,7 @@ def test_the_photo_is_seen_head_on_again() -> None:
     photo = cv2.warpPerspective(art, M, (400, 300), flags=cv2.INTER_AREA)
     hidden = np.zeros((300, 400), dtype=bool)
     hidden[:, :180] = True
-    found = rectified(photo, hidden, H)
+    found = rectify(photo, hidden, H)
     assert found is not None
     assert not found.seen.all()
     assert found.seen.any()
@@ -112,11 +112,11 @@ def test_the_photo_is_seen_head_on_again() -> None:
 def test_what_lies_outside_the_photo_is_not_seen() -> None:
     photo = np.full((300, 400, 3), 90, np.uint8)
     H = on_photo([[-100, 50], [100, 50], [100, 250], [-100, 250]])
-    found = rectified(photo, np.zeros((300, 400), dtype=bool), H)
+    found = rectify(photo, np.zeros((300, 400), dtype=bool), H)
     assert found is not None
     assert 0.4 < found.seen.mean() < 0.6
 
 
 def test_what_is_too_small_shows_nothing() -> None:
     H = on_photo([[190, 110], [198, 110], [198, 190], [190, 190]])
-    assert rectified(np.zeros((300, 400, 3), np.uint8), np.zeros((300, 400), dtype=bool), H) is None
+    assert rectify(np.zeros((300, 400, 3), np.uint8), np.zeros((300, 400), dtype=bool), H) is None

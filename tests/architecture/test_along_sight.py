@@ -14,9 +14,9 @@ from diorama_core.architecture.along_sight import (
     MIN_CONFIDENCE,
     MIN_SCALE,
     REACH_M,
-    drawn_before_walls,
-    mounted_on_ceiling,
-    mounted_on_walls,
+    move_in_front_of_walls,
+    snap_to_ceiling,
+    snap_to_walls,
 )
 from diorama_core.artefacts import ArchitectureEstimate, Cuboid, ObjectGeometry
 from diorama_core.provenance import RoomMethod, RoomSource, ScaleSource
@@ -30,7 +30,7 @@ ROOM = box_room(-2.0, 2.0, 4.0, 2.6)
 def hung(item, relation="mounted on", parent="back", source=ScaleSource.OBJECT_SIZES):
     edge = Support(item.object_id, parent, relation)
     geometry = ObjectGeometry(CAMERA, (item,), (edge,), source)
-    (found,) = mounted_on_walls(
+    (found,) = snap_to_walls(
         geometry, ArchitectureEstimate(Architecture(ROOM), (edge,), 1.0, RoomSource(RoomMethod.GIVEN))
     ).cuboids
     return found
@@ -79,7 +79,7 @@ def test_a_lamp_reaches_the_ceiling_inside_the_room(z):
     edge = Support("lamp", "ceiling", "mounted on")
     geometry = ObjectGeometry(CAMERA, (lamp,), (edge,), ScaleSource.GIVEN)
     room = ArchitectureEstimate(Architecture(ROOM), (edge,), 1.0, RoomSource(RoomMethod.GIVEN))
-    (found,) = mounted_on_ceiling(geometry, room).cuboids
+    (found,) = snap_to_ceiling(geometry, room).cuboids
     assert found.corners_world[:, 2].max() == pytest.approx(2.6, abs=1e-9)
     assert found.corners_world[:, 1].max() < 4.0
     assert (found.size_m <= 1.8 * MAX_SCALE * lamp.size_m).all()
@@ -94,7 +94,7 @@ def test_a_lamp_rises_past_a_wall_that_ends_beside_its_line_of_sight():
     def depth(*more: Plane) -> float:
         room = Architecture((*ROOM, *more))
         estimate = ArchitectureEstimate(room, (edge,), 1.0, RoomSource(RoomMethod.GIVEN))
-        return float(mounted_on_ceiling(geometry, estimate).cuboids[0].centre[1])
+        return float(snap_to_ceiling(geometry, estimate).cuboids[0].centre[1])
 
     beside = Plane("fold", "wall", corners)
     before = Plane("fold", "wall", corners - np.array([2.4, 0.0, 0.0]))
@@ -113,7 +113,7 @@ def drawn(*cuboids: Cuboid, planes=SURE_ROOM) -> dict[str, Cuboid]:
     edges = (Support("dresser", floor, "placed on"), Support("vase", "dresser", "placed on"))
     geometry = ObjectGeometry(CAMERA, cuboids, edges, ScaleSource.GIVEN)
     room = ArchitectureEstimate(Architecture(planes), edges, 1.0, RoomSource(RoomMethod.GIVEN))
-    return {c.object_id: c for c in drawn_before_walls(geometry, room).cuboids}
+    return {c.object_id: c for c in move_in_front_of_walls(geometry, room).cuboids}
 
 
 def test_an_object_whose_foot_is_hidden_comes_before_the_wall_and_reaches_the_floor():

@@ -10,7 +10,7 @@ import pytest
 from diorama_core.editing.homes import as_one_door, draw_room_of_home, join
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rooms import doorways, rooms_of_objects, rooms_of_planes
-from diorama_core.multiview.one_scene import moved_to_room
+from diorama_core.multiview.one_scene import move_to_room
 from diorama_core.scene import edits
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from diorama_core.scene.support import check_scene
@@ -47,7 +47,7 @@ def turned() -> Scene:
     """A furnished room elsewhere, turned, with its door in another wall."""
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = yaw_rotation(0.7), [11.0, -3.0, 0.4]
-    return moved_to_room(with_door(furnished_scene(), "way-in", "wall_2", -0.3), T)
+    return move_to_room(with_door(furnished_scene(), "way-in", "wall_2", -0.3), T)
 
 
 def test_the_two_sides_of_the_door_are_one(home: Scene, turned: Scene) -> None:

@@ -21,7 +21,7 @@ from diorama_core.importing.roomplan_parts import KINDS
 from diorama_core.importing.scene_import import import_scene
 from diorama_core.layout.recipes import recipe
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.multiview.one_scene import moved_to_room
+from diorama_core.multiview.one_scene import move_to_room
 from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.artefacts import photo_only
@@ -42,7 +42,7 @@ def room(number: int = 0) -> tuple[Scene, TruthView, np.ndarray]:
     view = made_once(f"photo of {case.name}", lambda: photograph(case, tested, 1)[0])
     there = view.camera.T_world_camera @ np.linalg.inv(view.truth.camera.T_world_camera)
     scene = view.truth.scene
-    return moved_to_room(scene, there), view.truth, view.camera.position
+    return move_to_room(scene, there), view.truth, view.camera.position
 
 
 def joined(opened: Opened, inputs: Inputs) -> Opened:

@@ -7,7 +7,7 @@ import pytest
 
 from diorama_core.errors import Cancelled, InputError, UnavailableError
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.multiview.found_poses import UnposedPhoto, _left_out, find_poses
+from diorama_core.multiview.found_poses import UnposedPhoto, _describe_excluded, find_poses
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.scene.types import Camera
 from diorama_core.synthesis import furnish_room
@@ -66,8 +66,8 @@ def test_photos_with_nothing_in_common_are_one_line() -> None:
 
 def test_photos_of_two_rooms_are_told_apart() -> None:
     groups = [frozenset({"a.jpg", "b.jpg"}), frozenset({"c.jpg", "d.jpg", "e.jpg"}), frozenset({"f.jpg"})]
-    assert _left_out([], groups) == ()
-    assert _left_out(["a.jpg", "b.jpg", "f.jpg"], groups) == (
+    assert _describe_excluded([], groups) == ()
+    assert _describe_excluded(["a.jpg", "b.jpg", "f.jpg"], groups) == (
         "a.jpg, b.jpg: join one another only, as photos of another room do; left out",
         "f.jpg: too little in common with the other photos to find the camera; left out",
     )

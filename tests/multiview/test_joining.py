@@ -10,8 +10,8 @@ from diorama_core.multiview.joining import (
     RoomPhoto,
     Track,
     edges_cut_short,
-    fitted_track,
-    joined_objects,
+    fit_track,
+    join_objects,
     with_agreeing_boxes,
 )
 from diorama_core.multiview.settings import SETTINGS
@@ -21,7 +21,7 @@ from tests.multiview.rooms import CAMERAS, THINGS, photo
 @pytest.mark.parametrize("error_m", [0.0, 0.3, -0.3])
 def test_boxes_of_one_thing_become_one_object(error_m: float) -> None:
     photos, whose = zip(*(photo(c, error_m=error_m) for c in CAMERAS), strict=True)
-    tracks = joined_objects(photos)
+    tracks = join_objects(photos)
     assert len(tracks) == len(THINGS)
     for track in tracks:
         assert len({whose[number][box] for number, box in track.boxes}) == 1
@@ -32,7 +32,7 @@ def test_boxes_of_one_thing_become_one_object(error_m: float) -> None:
 
 def test_one_photo_alone_is_what_it_says() -> None:
     one, _ = photo(CAMERAS[0])
-    tracks = joined_objects((one,))
+    tracks = join_objects((one,))
     assert [t.boxes for t in tracks] == [((0, k),) for k in range(len(one.alone))]
     assert all((t.cuboid.centre == a.centre).all() for t, a in zip(tracks, one.alone, strict=True))
 
@@ -40,7 +40,7 @@ def test_one_photo_alone_is_what_it_says() -> None:
 def test_things_of_other_kinds_are_never_joined() -> None:
     first, _ = photo(CAMERAS[0], THINGS[:1])
     second, _ = photo(CAMERAS[1], (THINGS[3],))
-    assert len(joined_objects((first, second))) == 2
+    assert len(join_objects((first, second))) == 2
 
 
 SOFA = 0
@@ -57,7 +57,7 @@ def photographed(cut_short_in: int | None = None) -> tuple[list[RoomPhoto], Trac
             boxes[0, 1] = boxes[0, [1, 3]].mean()
             one = replace(one, boxes=replace(one.boxes, observations=replace(one.boxes.observations, box_px=boxes)))
         photos.append(one)
-    return photos, fitted_track(tuple((number, 0) for number in range(len(CAMERAS))), photos)
+    return photos, fit_track(tuple((number, 0) for number in range(len(CAMERAS))), photos)
 
 
 def off(track: Track) -> float:
@@ -69,7 +69,7 @@ def test_boxes_that_agree_all_count() -> None:
     photos, track = photographed()
     found = with_agreeing_boxes(track, photos)
     assert found.left_out == ()
-    assert found.fitted == track.boxes
+    assert found.inliers == track.boxes
     assert found.cuboid is track.cuboid
 
 
@@ -84,10 +84,10 @@ def test_a_box_that_no_other_photo_agrees_with_is_left_out_of_the_fit_and_stays_
 
 def test_of_two_photos_that_disagree_the_one_that_shows_more_counts_alone() -> None:
     photos, _ = photographed(cut_short_in=1)
-    both = fitted_track(((0, 0), (1, 0)), photos)
+    both = fit_track(((0, 0), (1, 0)), photos)
     assert both.cuboid.cost > SETTINGS.left_out_cost
     found = with_agreeing_boxes(both, photos)
-    assert found.fitted == ((0, 0),)
+    assert found.inliers == ((0, 0),)
     np.testing.assert_array_equal(found.cuboid.size_m, photos[0].alone[0].size_m)
 
 

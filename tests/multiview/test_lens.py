@@ -8,7 +8,7 @@ import pytest
 
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import InputError
-from diorama_core.multiview.lens import Lens, lens_of, straight_points, straightened, without_distortion
+from diorama_core.multiview.lens import Lens, lens_of, straight_points, undistort, without_distortion
 from diorama_core.scene.types import Intrinsics
 
 K = Intrinsics(160, 120, 110.0, 112.0, 78.0, 61.0)
@@ -29,7 +29,7 @@ def test_points_boxes_and_pictures_are_straightened_alike() -> None:
     low, high = there.min(axis=0), there.max(axis=0)
     box = LabelledBox((float(low[0]), float(low[1]), float(high[0]), float(high[1])), "table", "table")
     depth = np.full((120, 160), 2.0, np.float32)
-    found = straightened(Inputs(Photo(rgb, "a.jpg", (160, 120)), (box,), depth_m=depth), K, LENS)
+    found = undistort(Inputs(Photo(rgb, "a.jpg", (160, 120)), (box,), depth_m=depth), K, LENS)
     rows, columns = np.nonzero(found.photo.rgb[..., 0] > 128)
     assert [columns.min(), rows.min(), columns.max(), rows.max()] == pytest.approx([20, 20, 60, 70], abs=2)
     assert found.boxes[0].box == pytest.approx((20, 20, 60, 70), abs=3)
@@ -39,8 +39,8 @@ def test_points_boxes_and_pictures_are_straightened_alike() -> None:
 
 def test_a_straight_lens_changes_nothing() -> None:
     inputs = Inputs(Photo(np.zeros((120, 160, 3), np.uint8), "a.jpg", (160, 120)))
-    assert straightened(inputs, K, Lens()) is inputs
-    assert straightened(inputs, K, Lens((1e-6,))) is inputs
+    assert undistort(inputs, K, Lens()) is inputs
+    assert undistort(inputs, K, Lens((1e-6,))) is inputs
 
 
 def test_a_lens_turns_with_its_picture() -> None:
@@ -48,7 +48,7 @@ def test_a_lens_turns_with_its_picture() -> None:
     there = bent(points, K, LENS)
     turned = Intrinsics(120, 160, K.fy, K.fx, 120 - K.cy, K.cx)
     around = np.column_stack([120 - points[:, 1], points[:, 0]])
-    assert bent(around, turned, LENS.turned(1)) == pytest.approx(np.column_stack([120 - there[:, 1], there[:, 0]]))
+    assert bent(around, turned, LENS.rotate(1)) == pytest.approx(np.column_stack([120 - there[:, 1], there[:, 0]]))
 
 
 def test_a_fisheye_lens_is_straightened() -> None:
@@ -72,6 +72,6 @@ def test_one_photo_is_straightened_around_its_own_camera() -> None:
         without_distortion(Inputs(Photo(rgb, "a.jpg", (160, 120))), LENS)
     found = without_distortion(Inputs(Photo(rgb, "a.jpg", (160, 120), exif_focal_px=110.0)), LENS)
     assert found.intrinsics == Intrinsics(160, 120, 110.0, 110.0, 80.0, 60.0)
-    expected = straightened(Inputs(Photo(rgb, "a.jpg", (160, 120))), found.intrinsics, LENS)
+    expected = undistort(Inputs(Photo(rgb, "a.jpg", (160, 120))), found.intrinsics, LENS)
     assert np.array_equal(found.photo.rgb, expected.photo.rgb)
     assert not np.array_equal(found.photo.rgb, rgb)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.geometry.openings import STANDS_OUT_M
-from diorama_core.multiview.one_scene import acyclic, fuse_proportions, moved_to_room, set_into_wall
+from diorama_core.multiview.one_scene import acyclic, fuse_proportions, move_to_room, set_into_wall
 from diorama_core.scene.types import Pose, Support, yaw_rotation
 from tests.app.small_room import furnished_scene
 
@@ -39,8 +39,8 @@ def test_a_scene_moves_as_a_whole_and_back() -> None:
     scene = furnished_scene()
     T = np.eye(4)
     T[:3, :3], T[:3, 3] = yaw_rotation(0.7), (1.0, -2.0, 0.3)
-    there = moved_to_room(scene, T)
-    back = moved_to_room(there, np.linalg.inv(T))
+    there = move_to_room(scene, T)
+    back = move_to_room(there, np.linalg.inv(T))
     for before, moved, after in zip(scene.objects, there.objects, back.objects, strict=True):
         np.testing.assert_allclose(moved.pose.position, T[:3, :3] @ before.pose.position + T[:3, 3])
         np.testing.assert_allclose(after.pose.position, before.pose.position, atol=1e-9)

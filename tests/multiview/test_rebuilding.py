@@ -9,7 +9,7 @@ import pytest
 
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.multiview import adding
-from diorama_core.multiview.rebuilding import carried, with_photos_again
+from diorama_core.multiview.rebuilding import transfer_camera, with_photos_again
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.scene.types import Camera, yaw_rotation
 from tests.few_shapes import few_shapes
@@ -28,9 +28,9 @@ def moved(one: Camera, turn_rad: float, scale: float) -> Camera:
 def test_a_camera_follows_turn_place_and_scale() -> None:
     first, second = camera(-0.4, -2.6), camera(2.2, -2.0, height_m=1.3)
     after = moved(first, 0.7, 1.2)
-    found, expected = carried(second, first, after), moved(second, 0.7, 1.2)
+    found, expected = transfer_camera(second, first, after), moved(second, 0.7, 1.2)
     np.testing.assert_allclose(found.T_world_camera, expected.T_world_camera, atol=1e-9)
-    same = carried(second, first, first)
+    same = transfer_camera(second, first, first)
     np.testing.assert_allclose(same.T_world_camera, second.T_world_camera, atol=1e-12)
 
 

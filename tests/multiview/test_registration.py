@@ -14,9 +14,9 @@ from diorama_core.multiview.registration import (
     PlacedPhoto,
     camera_of,
     photos_of_scene,
-    placed_camera,
-    registered_camera,
+    register_camera,
     sampson_px,
+    solve_camera,
 )
 from diorama_core.scene.types import Camera
 from tests.multiview.rooms import CAMERAS, K
@@ -51,14 +51,14 @@ def common(surface_off: float, wrong: int = 0) -> CommonPoints:
 
 
 def test_a_camera_is_found_by_points_on_surfaces() -> None:
-    found = placed_camera([common(0.0, wrong=30)], K, 0.03)
+    found = solve_camera([common(0.0, wrong=30)], K, 0.03)
     assert found is not None
     assert turn_off_deg(found, CAMERAS[1]) < 0.3
     assert np.linalg.norm(found.position - CAMERAS[1].position) < 0.03
 
 
 def test_surfaces_that_are_too_far_only_stretch_the_way_between_the_photos() -> None:
-    found = placed_camera([common(0.1)], K, 0.03)
+    found = solve_camera([common(0.1)], K, 0.03)
     assert found is not None
     assert turn_off_deg(found, CAMERAS[1]) < 0.3
     base, true = (c.position - CAMERAS[0].position for c in (found, CAMERAS[1]))
@@ -69,17 +69,17 @@ def test_surfaces_that_are_too_far_only_stretch_the_way_between_the_photos() -> 
 def test_an_unknown_focal_length_is_found_too() -> None:
     from dataclasses import replace
 
-    found = placed_camera([common(0.0)], replace(K, fx=1.2 * K.fx, fy=1.2 * K.fy), GUESSED_LOG_SIGMA)
+    found = solve_camera([common(0.0)], replace(K, fx=1.2 * K.fx, fy=1.2 * K.fy), GUESSED_LOG_SIGMA)
     assert found is not None
     assert found.intrinsics.fx == pytest.approx(K.fx, rel=0.05)
 
 
 def test_too_little_in_common_is_no_camera() -> None:
     few = common(0.0).rows(np.arange(200) < 10)
-    assert placed_camera([few], K, 0.03) is None
-    assert placed_camera([], K, 0.03) is None
+    assert solve_camera([few], K, 0.03) is None
+    assert solve_camera([], K, 0.03) is None
     strange = common(0.0, wrong=190)
-    assert placed_camera([strange], K, 0.03) is None
+    assert solve_camera([strange], K, 0.03) is None
 
 
 def test_pixels_of_one_place_have_no_epipolar_distance() -> None:
@@ -94,7 +94,7 @@ def test_a_photo_of_something_else_is_one_line() -> None:
     grey = [np.full((120, 160, 3), 90 + n, np.uint8) for n in range(2)]
     known = PlacedPhoto(UnposedPhoto("first", grey[0], 150.0), Camera(K.resize(160, 120), CAMERAS[0].T_world_camera))
     with pytest.raises(InputError, match=r"new does not join: .* take it from a step or two beside"):
-        registered_camera(UnposedPhoto("new", grey[1], None), [known], lambda camera, px: np.ones(len(px)))
+        register_camera(UnposedPhoto("new", grey[1], None), [known], lambda camera, px: np.ones(len(px)))
 
 
 @pytest.mark.slow

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from diorama_core.artefacts import LabelledBox, Photo
 from diorama_core.multiview.sphere_views import (
     SphereBox,
-    drawn_on_sphere,
-    found_in_views,
-    marked_views,
+    merge_detections,
     picture_boxes,
+    project_to_views,
     sphere_views,
+    to_sphere_boxes,
     view_photo,
 )
 
@@ -26,7 +26,7 @@ def test_every_narrow_thing_is_whole_in_some_view_and_comes_back(
     a: float, half: float, low: float, tall: float
 ) -> None:
     thing = SphereBox(a, half, low, low + tall, CHAIR)
-    shown = [(view, box) for view in VIEWS if (box := view.shown(thing)) is not None]
+    shown = [(view, box) for view in VIEWS if (box := view.project(thing)) is not None]
     view, box = min(shown, key=lambda row: abs(thing.azimuth_from(row[0].azimuth)))
     assert 0 < box.box[0] < box.box[2] < view.intrinsics.width
     back = view.to_sphere(box)
@@ -40,7 +40,7 @@ def test_a_thing_at_the_seam_is_one() -> None:
         LabelledBox((0.0, 510.0, 60.0, 690.0), "chair", "chair"),
     ]
     apart = LabelledBox((0.0, 100.0, 50.0, 200.0), "picture", "picture")
-    things = drawn_on_sphere([*parts, apart], SIZE, np.eye(3))
+    things = to_sphere_boxes([*parts, apart], SIZE, np.eye(3))
     assert len(things) == 2
     whole = next(t for t in things if t.labelled.category == "chair")
     assert whole.half_width == pytest.approx(np.pi * 118 / 2048)
@@ -50,26 +50,26 @@ def test_a_thing_at_the_seam_is_one() -> None:
 @given(st.floats(0, 2046), st.floats(20, 400), st.floats(300, 500), st.floats(30, 400))
 def test_boxes_of_the_picture_come_back_also_across_the_seam(x: float, wide: float, y: float, tall: float) -> None:
     drawn = LabelledBox((x, y, x + wide, y + tall), "chair", "chair")
-    things = drawn_on_sphere([drawn], SIZE, np.eye(3))
+    things = to_sphere_boxes([drawn], SIZE, np.eye(3))
     boxes = picture_boxes(things, SIZE, np.eye(3))
     assert len(boxes) == (2 if x + wide > SIZE[0] + 2 else 1)
     assert boxes[0].box[0] == pytest.approx(x, abs=0.01)
     beyond = 0.0 if x + wide <= SIZE[0] + 2 else SIZE[0]
     assert boxes[-1].box[2] == pytest.approx(min(x + wide - beyond, SIZE[0]), abs=0.01)
     assert all(b.box[1::2] == pytest.approx((y, y + tall), abs=0.01) for b in boxes)
-    (again,) = drawn_on_sphere(boxes, SIZE, np.eye(3))
+    (again,) = to_sphere_boxes(boxes, SIZE, np.eye(3))
     assert again.half_width == pytest.approx(things[0].half_width, abs=1e-4)
 
 
 def test_views_are_marked_with_the_best_one_first_and_what_is_found_twice_is_one() -> None:
     thing = SphereBox(0.5, 0.2, -0.4, 0.1, CHAIR)
     photos = [(v, Photo(np.zeros((v.intrinsics.height, v.intrinsics.width, 3), np.uint8), "p", SIZE)) for v in VIEWS]
-    posed, seen = marked_views(photos, [thing], 1.4)
+    posed, seen = project_to_views(photos, [thing], 1.4)
     nearest = min(range(len(VIEWS)), key=lambda n: abs(thing.azimuth_from(VIEWS[n].azimuth)))
     assert seen[0][0] == (nearest, 0)
     assert len(seen[0]) >= 2
     assert all(p.camera.position[2] == 1.4 for p in posed)
-    found = found_in_views([(v, p.inputs.boxes) for v, p in zip(VIEWS, posed, strict=True)])
+    found = merge_detections([(v, p.inputs.boxes) for v, p in zip(VIEWS, posed, strict=True)])
     assert len(found) == 1
     assert found[0].azimuth_from(0.5) == pytest.approx(0.0, abs=0.02)
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.retrieval.outlines import filled, open_share, outline_agreement
+from diorama_core.retrieval.outlines import close_gaps, open_share, outline_agreement
 
 
 def slats(gap: int) -> np.ndarray:
@@ -19,15 +19,15 @@ def slats(gap: int) -> np.ndarray:
 
 
 def test_narrow_gaps_are_closed_and_wide_ones_stay_open() -> None:
-    assert filled(slats(2))[10:52, 12:50].all()
-    assert not filled(slats(20))[30, 10:54].all()
+    assert close_gaps(slats(2))[10:52, 12:50].all()
+    assert not close_gaps(slats(20))[30, 10:54].all()
 
 
 @given(st.integers(0, 1000))
 def test_filling_adds_and_never_takes_away_and_not_twice(seed: int) -> None:
     rng = np.random.default_rng(seed)
     mask = rng.random((24, 24)) < 0.4
-    once = filled(mask)
+    once = close_gaps(mask)
     assert (once >= mask).all()
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     outside = once.copy()
@@ -37,7 +37,7 @@ def test_filling_adds_and_never_takes_away_and_not_twice(seed: int) -> None:
 
 def test_an_empty_mask_stays_empty() -> None:
     empty = np.zeros((8, 8), dtype=bool)
-    assert filled(empty) is empty
+    assert close_gaps(empty) is empty
 
 
 @pytest.mark.parametrize(("trust", "share"), [(0.0, 0.0), (0.5, 0.0), (0.75, 0.25), (1.0, 0.5)])
@@ -47,7 +47,7 @@ def test_gaps_count_as_far_as_the_mask_is_trusted(trust: float, share: float) ->
 
 @pytest.mark.unchecked
 def test_the_right_outline_agrees_best_with_and_without_its_gaps() -> None:
-    true, solid, other = slats(2), filled(slats(2)), np.roll(slats(2), 12, axis=1)
+    true, solid, other = slats(2), close_gaps(slats(2)), np.roll(slats(2), 12, axis=1)
 
     def seen(trust: float):
         covered = true.ravel().astype(float)
@@ -59,7 +59,7 @@ def test_the_right_outline_agrees_best_with_and_without_its_gaps() -> None:
         return SimpleNamespace(covered=covered, weight=np.ones(64 * 64), mask_trust=trust, agreement=agreement)
 
     candidates = np.stack([true.ravel(), solid.ravel(), other.ravel()])
-    whole = filled(true).ravel().astype(float)
+    whole = close_gaps(true).ravel().astype(float)
     doubtful = outline_agreement(seen(0.4), whole, candidates)
     assert doubtful[0] == pytest.approx(doubtful[1]), "a doubtful mask's gaps say nothing"
     assert doubtful[0] > doubtful[2] + 0.2

@@ -9,8 +9,8 @@ from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, category
 from diorama_core.retrieval.pools import (
     RELATED,
     RetrievalQuery,
+    near_kinds,
     pool_for,
-    related_kinds,
     sense_factor,
 )
 
@@ -24,8 +24,8 @@ def pool(name: str, size, holds: bool = False):
 def test_every_category_knows_its_near_kinds() -> None:
     names = {c.name for c in CATEGORIES} - {UNKNOWN.name}
     assert set(RELATED) <= {name for name in names if not category(name).kin}
-    assert all(related_kinds(name) for name in names)
-    assert all(near in names and near != name for name in names for near in related_kinds(name))
+    assert all(near_kinds(name) for name in names)
+    assert all(near in names and near != name for name in names for near in near_kinds(name))
 
 
 def test_kinds_that_a_word_may_mean_are_looked_at_the_likelier_the_more_they_count() -> None:

@@ -14,7 +14,7 @@ from diorama_core.io.cache import LruCache
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.form import MEASURED, VALUES
 from diorama_core.retrieval import feature_cache, seen_forms
-from diorama_core.retrieval.seen_forms import has_form, seen_form_factor, shape_form
+from diorama_core.retrieval.seen_forms import form_likelihood_factor, has_form, shape_form
 
 LIBRARY = built_in_library()
 
@@ -37,19 +37,19 @@ def form(shape_id: str) -> dict[str, str | int]:
 
 def test_the_form_that_was_seen_scores_higher() -> None:
     round_top = seen(top="round", base="pedestal")
-    assert seen_form_factor(form("table-round-tulip"), round_top) > 1.0
-    assert seen_form_factor(form("table-trestle-x"), round_top) < 1.0
+    assert form_likelihood_factor(form("table-round-tulip"), round_top) > 1.0
+    assert form_likelihood_factor(form("table-trestle-x"), round_top) < 1.0
 
 
 def test_drawers_are_counted_by_joints() -> None:
     assert form("night-stand-white-open")["drawers"] == 0
-    assert seen_form_factor(form("night-stand-white-open"), seen(drawers=2)) < 1.0
+    assert form_likelihood_factor(form("night-stand-white-open"), seen(drawers=2)) < 1.0
 
 
 @pytest.mark.parametrize("shape_id", ["table-round-tulip", "sofa-grey-three", "picture-hills-oak"])
 def test_what_was_not_seen_changes_nothing(shape_id: str) -> None:
-    assert seen_form_factor(form(shape_id), ()) == 1.0
-    assert seen_form_factor(form(shape_id), seen()) == pytest.approx(1.0)
+    assert form_likelihood_factor(form(shape_id), ()) == 1.0
+    assert form_likelihood_factor(form(shape_id), seen()) == pytest.approx(1.0)
 
 
 @given(st.integers(0, 2**32 - 1))
@@ -60,7 +60,7 @@ def test_on_average_no_form_is_preferred(seed: int) -> None:
     flat = [float(p) for part in parts for p in part]
     for name, part in zip(MEASURED, parts, strict=True):
         smooth = (part + 0.03) / (part + 0.03).sum()
-        logs = [np.log(seen_form_factor({name: value}, flat)) for value in VALUES[name]]
+        logs = [np.log(form_likelihood_factor({name: value}, flat)) for value in VALUES[name]]
         assert float(smooth @ np.array(logs)) == pytest.approx(0.0, abs=1e-9)
 
 

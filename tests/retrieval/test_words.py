@@ -11,7 +11,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import Shape
 from diorama_core.progress import Progress
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
-from diorama_core.retrieval.words import described_share, nouns_of_few, words_factor
+from diorama_core.retrieval.words import description_share, nouns_of_few, words_factor
 from tests.pose.rooms import BlockLibrary, Room, camera_at, standing
 
 LIBRARY = built_in_library()
@@ -19,7 +19,7 @@ ARMCHAIRS = LIBRARY.in_category("armchair")
 
 
 def share(label: str) -> dict[str, float]:
-    found = described_share(LIBRARY, label, "armchair", ARMCHAIRS)
+    found = description_share(LIBRARY, label, "armchair", ARMCHAIRS)
     return dict(zip((s.id for s in ARMCHAIRS), found, strict=True))
 
 
@@ -44,10 +44,10 @@ def test_a_name_of_some_of_a_kind_finds_those() -> None:
 
 def test_a_synonym_that_names_some_of_a_kind_finds_those() -> None:
     plants = LIBRARY.in_category("plant")
-    found = dict(zip((s.id for s in plants), described_share(LIBRARY, "flowers", "plant", plants), strict=True))
+    found = dict(zip((s.id for s in plants), description_share(LIBRARY, "flowers", "plant", plants), strict=True))
     assert found["plant-cut-flowers"] == 1.0
     assert found["plant-orchid"] > found["plant-spider"] == 0.0
-    assert set(described_share(LIBRARY, "houseplant", "plant", plants)) == {1.0}
+    assert set(description_share(LIBRARY, "houseplant", "plant", plants)) == {1.0}
     assert nouns_of_few(LIBRARY, "flowers", "plant") == ("flower",)
     assert nouns_of_few(LIBRARY, "houseplant", "plant") == ()
 
@@ -75,7 +75,7 @@ def test_what_is_said_of_many_rules_nothing_out(label: str, category: str) -> No
 
 
 def test_no_shapes_no_shares() -> None:
-    assert described_share(LIBRARY, "leather armchair", "armchair", []).shape == (0,)
+    assert description_share(LIBRARY, "leather armchair", "armchair", []).shape == (0,)
 
 
 def test_between_shapes_that_look_alike_the_word_decides() -> None:

@@ -28,7 +28,7 @@ class PlaneSheet:
     corners: Float[np.ndarray, "4 3"]
 
 
-def fitted_sheet(points: Float[np.ndarray, "n 3"], eye: Float[np.ndarray, "3"]) -> PlaneSheet:
+def fit_sheet(points: Float[np.ndarray, "n 3"], eye: Float[np.ndarray, "3"]) -> PlaneSheet:
     """The plane through most of the points, and the smallest rectangle on it that holds those (rotating calipers)."""
     normal, offset, agree = ransac_plane(points, PLANE_M, trials=TRIALS)
     if float(normal @ eye) < offset:
@@ -53,7 +53,7 @@ def upright(wall: PlaneSheet, floor: PlaneSheet) -> PlaneSheet:
     return PlaneSheet(normal, offset, _project(wall.corners, normal, offset))
 
 
-def joined(floor: PlaneSheet, walls: list[PlaneSheet]) -> list[PlaneSheet]:
+def join_walls(floor: PlaneSheet, walls: list[PlaneSheet]) -> list[PlaneSheet]:
     """Walls with feet on the floor and, where two come near their common line, with shared corners on it."""
     walls = [_snap_to_floor(w, floor) for w in walls]
     for i, j in combinations(range(len(walls)), 2):

@@ -46,8 +46,8 @@ def planar_clusters(
     """
     if len(points) < MIN_POINTS:
         return np.full(len(points), -1)
-    representatives, directions = _thinned(points, normals)
-    labels = _grown(representatives, directions, seed)
+    representatives, directions = _downsample(points, normals)
+    labels = _grow_clusters(representatives, directions, seed)
     if (labels < 0).all():
         return np.full(len(points), -1)
     settled = labels >= 0
@@ -55,7 +55,7 @@ def planar_clusters(
     return np.asarray(labels[settled][nearest])
 
 
-def _thinned(
+def _downsample(
     points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"]
 ) -> tuple[Float[np.ndarray, "m 3"], Float[np.ndarray, "m 3"]]:
     """One point a voxel, without statistical outliers."""
@@ -69,7 +69,9 @@ def _thinned(
     return np.asarray(cloud.points)[sound], directions[sound] / lengths[sound, None]
 
 
-def _grown(points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], seed: int) -> Int[np.ndarray, "n"]:
+def _grow_clusters(
+    points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], seed: int
+) -> Int[np.ndarray, "n"]:
     """Seed normals from K-means; everything within the growth angle of one, parted where it is not connected."""
     labels = np.full(len(points), -1)
     if len(points) < MIN_POINTS:
@@ -85,13 +87,13 @@ def _grown(points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], 
         fullest = max(waiting, key=lambda k: int((near[:, k] & free).sum()))
         waiting.remove(fullest)
         member = near[:, fullest] & free
-        for piece in _connected(points, member):
+        for piece in _find_dense_clusters(points, member):
             labels[piece], number = number, number + 1
         free &= ~member
     return labels
 
 
-def _connected(points: Float[np.ndarray, "n 3"], member: Bool[np.ndarray, "n"]) -> list[Int[np.ndarray, "_"]]:
+def _find_dense_clusters(points: Float[np.ndarray, "n 3"], member: Bool[np.ndarray, "n"]) -> list[Int[np.ndarray, "_"]]:
     """Indices of the dense pieces of the members that are large enough, largest first."""
     chosen = np.flatnonzero(member)
     if len(chosen) < MIN_POINTS:

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.plainrecon.bounds import PlaneSheet, fitted_sheet, joined, upright
+from diorama_core.architecture.plainrecon.bounds import PlaneSheet, fit_sheet, join_walls, upright
 from diorama_core.architecture.plainrecon.clusters import MIN_POINTS, planar_clusters
 from diorama_core.architecture.supports import resolve_supports
-from diorama_core.architecture.texture.colours import coloured, object_pixels
+from diorama_core.architecture.texture.colours import colour_planes, object_pixels
 from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE
-from diorama_core.architecture.walls.surface import MeasuredSurface, measured_surface
+from diorama_core.architecture.walls.surface import MeasuredSurface, measure_surface
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.progress import Progress
 from diorama_core.provenance import RoomMethod, RoomSource
@@ -47,12 +47,12 @@ class PlainRecon:
             ValueError: when the inputs hold no measured depth.
         """
         return room_of_pieces(
-            inputs, objects, geometry, progress, seed=self.seed, method=RoomMethod.PLAINRECON, bound=_joined_to
+            inputs, objects, geometry, progress, seed=self.seed, method=RoomMethod.PLAINRECON, bound=_join_upright_walls
         )
 
 
-def _joined_to(floor: PlaneSheet, walls: list[PlaneSheet]) -> list[PlaneSheet]:
-    return joined(floor, [upright(wall, floor) for wall in walls])
+def _join_upright_walls(floor: PlaneSheet, walls: list[PlaneSheet]) -> list[PlaneSheet]:
+    return join_walls(floor, [upright(wall, floor) for wall in walls])
 
 
 def room_of_pieces(
@@ -83,12 +83,12 @@ def room_of_pieces(
         raise ValueError(f"the room of {method.value} needs measured depth; use PhotoRoom for a photo alone")
     progress.report(0.0, "Clustering the measured points by their normals")
     hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
-    floor, walls = floor_and_walls(measured_surface(inputs.depth_m, geometry.camera, hidden), seed)
+    floor, walls = floor_and_walls(measure_surface(inputs.depth_m, geometry.camera, hidden), seed)
     progress.report(0.7, "Bounding the planes")
-    base = assumed_floor(geometry.camera.position) if floor is None else floor
+    base = default_floor(geometry.camera.position) if floor is None else floor
     planes = [plane_of("floor", base, GUESS_CONFIDENCE if floor is None else CONFIDENCE)]
     planes += [plane_of(f"wall_{k}", w, CONFIDENCE) for k, w in enumerate(bound(base, walls), 1)]
-    architecture = Architecture(coloured(tuple(planes), inputs.photo.rgb, geometry.camera, objects))
+    architecture = Architecture(colour_planes(tuple(planes), inputs.photo.rgb, geometry.camera, objects))
     progress.report(1.0, "Floor and walls are bounded")
     return ArchitectureEstimate(
         architecture=architecture,
@@ -114,13 +114,13 @@ def floor_and_walls(surface: MeasuredSurface, seed: int = 0) -> tuple[PlaneSheet
     standing = [k for k in range(len(sizes)) if abs(facing[k]) <= UP_COSINE and sizes[k] >= MIN_POINTS]
 
     def sheet(k: int) -> PlaneSheet:
-        return fitted_sheet(points[labels == k], surface.camera_position)
+        return fit_sheet(points[labels == k], surface.camera_position)
 
     floor = sheet(max(level, key=lambda k: int(sizes[k]))) if level else None
     return floor, [sheet(k) for k in standing]
 
 
-def assumed_floor(eye: Float[np.ndarray, "3"]) -> PlaneSheet:
+def default_floor(eye: Float[np.ndarray, "3"]) -> PlaneSheet:
     """A square of floor at height 0 around the camera."""
     reach = ASSUMED_FLOOR_M * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     corners = np.concatenate([eye[:2] + reach, np.zeros((4, 1))], axis=1)

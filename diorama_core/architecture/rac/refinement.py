@@ -45,7 +45,7 @@ class LayoutRefinementSettings:
 SETTINGS = LayoutRefinementSettings()
 
 
-def refined_layout(layout: RoomLayout, surface: MeasuredSurface, proposals: Proposals, camera: Camera) -> RoomLayout:
+def refine_layout(layout: RoomLayout, surface: MeasuredSurface, proposals: Proposals, camera: Camera) -> RoomLayout:
     """The layout with walls ended where the picture looks past them, as far as that explains the depth better.
 
     Args:
@@ -58,7 +58,7 @@ def refined_layout(layout: RoomLayout, surface: MeasuredSurface, proposals: Prop
     ends: tuple[PlaneLine, ...] = ()
     for _ in range(SETTINGS.max_rounds):
         error = depth_error_m(layout, surface, pixels)
-        new = hidden_ends(layout, surface, proposals, camera) if error > SETTINGS.min_error_m else ()
+        new = find_hidden_ends(layout, surface, proposals, camera) if error > SETTINGS.min_error_m else ()
         tried = best_layout(surface, proposals, camera, (*ends, *new)) if new else None
         if tried is None or depth_error_m(tried, surface, pixels) >= error:
             break
@@ -74,7 +74,7 @@ def depth_error_m(layout: RoomLayout, surface: MeasuredSurface, pixels: Float[np
     return float(np.where(surface.is_object, np.maximum(before, 0.0), np.abs(before)).mean()) if len(before) else 0.0
 
 
-def hidden_ends(
+def find_hidden_ends(
     layout: RoomLayout, surface: MeasuredSurface, proposals: Proposals, camera: Camera
 ) -> tuple[PlaneLine, ...]:
     """For every wall about which the layout is wrong, the line along which the depth leaves it.

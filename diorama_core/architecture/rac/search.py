@@ -67,7 +67,7 @@ def best_layout(
     k = camera.intrinsics
     inverse = inverse_depths(proposals.normals, proposals.offsets, camera)
     cells = arrangement(inverse, (k.width, k.height), hidden_ends)
-    chosen = labelled(cell_costs(cells, surface, proposals, camera), borders_of(cells))
+    chosen = label_cells(cell_costs(cells, surface, proposals, camera), borders_of(cells))
     return None if chosen is None else RoomLayout(cells, chosen)
 
 
@@ -123,7 +123,7 @@ def borders_of(cells: Arrangement) -> tuple[tuple[Border, ...], ...]:
     borders: list[list[Border]] = [[] for _ in cells.cells]
     planes = range(len(cells.inverse))
     for a, b, line in cells.neighbours():
-        middle, length = _shared(cells, a, b)
+        middle, length = _common_edge(cells, a, b)
         depth = [float(cells.inverse_at(k, middle[None])[0]) for k in planes]
         ending = cells.lines[line].ending
         allowed = np.eye(len(planes), dtype=bool)
@@ -135,7 +135,7 @@ def borders_of(cells: Arrangement) -> tuple[tuple[Border, ...], ...]:
     return tuple(tuple(of_cell) for of_cell in borders)
 
 
-def _shared(cells: Arrangement, a: int, b: int) -> tuple[Float[np.ndarray, "2"], float]:
+def _common_edge(cells: Arrangement, a: int, b: int) -> tuple[Float[np.ndarray, "2"], float]:
     """Middle and length of the edge between two cells."""
     one, two = cells.cells[a].corners, cells.cells[b].corners
     common = [p for p in one if np.linalg.norm(two - p, axis=1).min() < 1e-6]
@@ -144,7 +144,7 @@ def _shared(cells: Arrangement, a: int, b: int) -> tuple[Float[np.ndarray, "2"],
     return (common[0] + common[-1]) / 2, float(np.linalg.norm(common[-1] - common[0]))
 
 
-def labelled(costs: Float[np.ndarray, "c p"], borders: Sequence[Sequence[Border]]) -> tuple[int, ...] | None:
+def label_cells(costs: Float[np.ndarray, "c p"], borders: Sequence[Sequence[Border]]) -> tuple[int, ...] | None:
     """The cheapest feasible plane of every cell; None where there is none.
 
     The publication's problem in whole numbers: one of `c p` switches is on for every cell, a plane is shown only beside

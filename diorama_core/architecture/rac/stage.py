@@ -15,11 +15,11 @@ from jaxtyping import Float
 from shapely.geometry import MultiPolygon, Polygon
 
 from diorama_core.architecture.rac.proposals import Proposals, proposals
-from diorama_core.architecture.rac.refinement import refined_layout
+from diorama_core.architecture.rac.refinement import refine_layout
 from diorama_core.architecture.rac.search import RoomLayout, best_layout
 from diorama_core.architecture.supports import resolve_supports
-from diorama_core.architecture.texture.colours import coloured, object_pixels
-from diorama_core.architecture.walls.surface import measured_surface
+from diorama_core.architecture.texture.colours import colour_planes, object_pixels
+from diorama_core.architecture.walls.surface import measure_surface
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.errors import InputError
 from diorama_core.progress import Progress
@@ -55,7 +55,7 @@ class RenderAndCompareRoom:
         progress.report(0.0, "Proposing planes")
         camera = geometry.camera
         hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
-        surface = measured_surface(inputs.depth_m, camera, hidden)
+        surface = measure_surface(inputs.depth_m, camera, hidden)
         proposed = proposals(surface, self.seed)
         progress.report(0.3, "Comparing rendered layouts with the picture")
         layout = best_layout(surface, proposed, camera)
@@ -63,11 +63,11 @@ class RenderAndCompareRoom:
             raise InputError("render and compare found no layout that fills the picture; use --room closed")
         if self.refine:
             progress.report(0.6, "Ending walls where the picture looks past them")
-            layout = refined_layout(layout, surface, proposed, camera)
+            layout = refine_layout(layout, surface, proposed, camera)
         planes = polygons(layout, proposed, camera)
         if not any(p.role == "floor" for p in planes):
             raise InputError("render and compare found no floor in the picture; use --room closed")
-        architecture = Architecture(coloured(planes, inputs.photo.rgb, camera, objects))
+        architecture = Architecture(colour_planes(planes, inputs.photo.rgb, camera, objects))
         progress.report(1.0, "The layout is found")
         walls = len(architecture.by_role("wall"))
         return ArchitectureEstimate(

@@ -86,7 +86,7 @@ def level_view(rgb: UInt8[np.ndarray, "h w 3"], cues: RoomCues, objects: tuple[D
     edges = np.linspace(low, high, SETTINGS.headings + 1)
     slopes = _slopes(camera)
     middles, rows = 0.5 * (edges[1:] + edges[:-1]), 0.5 * (slopes[1:] + slopes[:-1])
-    pixels, inside = projected(camera, _directions(middles, rows))
+    pixels, inside = project_directions(camera, _directions(middles, rows))
     hidden = object_pixels((rgb.shape[0], rgb.shape[1]), objects)
     columns, lines = (np.where(inside, pixels[..., i], 0).astype(int) for i in (0, 1))
     free = inside & ~hidden[lines, columns]
@@ -102,7 +102,7 @@ def level_view(rgb: UInt8[np.ndarray, "h w 3"], cues: RoomCues, objects: tuple[D
     )
 
 
-def projected(
+def project_directions(
     camera: Camera, directions: Float[np.ndarray, "*n 3"]
 ) -> tuple[Float[np.ndarray, "*n 2"], Bool[np.ndarray, "*n"]]:
     """Pixels of world directions, and whether they are in the picture."""
@@ -137,7 +137,7 @@ def _cell_shares(
     camera: Camera, edges: Float[np.ndarray, "m1"], slopes: Float[np.ndarray, "k1"]
 ) -> Float[np.ndarray, "m k"]:
     """Area of the cells in the picture, square pixels."""
-    corners = projected(camera, _directions(edges, slopes))[0]
+    corners = project_directions(camera, _directions(edges, slopes))[0]
     across = corners[1:, :-1] - corners[:-1, :-1]
     up = corners[:-1, 1:] - corners[:-1, :-1]
     return np.asarray(np.abs(across[..., 0] * up[..., 1] - across[..., 1] * up[..., 0]))
@@ -218,9 +218,9 @@ def _line_shares(
 def _upright(
     cues: RoomCues, edges: Float[np.ndarray, "m1"], slopes: Float[np.ndarray, "k1"]
 ) -> Float[np.ndarray, "m1 k"]:
-    corners, _ = projected(cues.camera, _directions(edges, slopes))
+    corners, _ = project_directions(cues.camera, _directions(edges, slopes))
     lengths = np.linalg.norm(corners[:, 1:] - corners[:, :-1], axis=-1)
-    pixels, inside = projected(cues.camera, _directions(edges, 0.5 * (slopes[1:] + slopes[:-1])))
+    pixels, inside = project_directions(cues.camera, _directions(edges, 0.5 * (slopes[1:] + slopes[:-1])))
     k = cues.camera.intrinsics
     responses = response(cues.edge_maps[2], pixels, inside, cues.map_scale) - EDGE_THRESHOLD
     return np.asarray(np.where(inside, responses * lengths / np.hypot(k.width, k.height), 0.0))

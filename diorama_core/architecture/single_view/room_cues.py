@@ -189,12 +189,12 @@ def _lie_on_objects(
     union = np.any([o.mask for o in objects], axis=0).astype(np.uint8)
     union = cv2.dilate(union, np.ones((5, 5), np.uint8)).astype(bool)
 
-    def covered(points: np.ndarray) -> np.ndarray:
+    def is_covered(points: np.ndarray) -> np.ndarray:
         columns, rows = points.astype(int).T
         return union[rows.clip(0, shape[0] - 1), columns.clip(0, shape[1] - 1)]
 
-    ends = covered(segments[:, :2]) & covered(segments[:, 2:])
-    return covered(0.5 * (segments[:, :2] + segments[:, 2:])) | ends
+    ends = is_covered(segments[:, :2]) & is_covered(segments[:, 2:])
+    return is_covered(0.5 * (segments[:, :2] + segments[:, 2:])) | ends
 
 
 def _surface_rays(

@@ -16,17 +16,17 @@ from diorama_core.architecture.single_view.wall_chain import (
     PhotoWalls,
     best_ceiling,
     best_chain,
-    refined,
+    refine_chain,
 )
 from diorama_core.architecture.supports import resolve_supports
-from diorama_core.architecture.texture.colours import coloured, visible_planes
+from diorama_core.architecture.texture.colours import colour_planes, visible_planes
 from diorama_core.architecture.walls.ceilings import CeilingPiece
 from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE, room_planes
 from diorama_core.architecture.walls.openings import WallOpening, counts
 from diorama_core.architecture.walls.passages import with_passages
 from diorama_core.architecture.walls.wall_candidates import WallCandidate
 from diorama_core.architecture.walls.wall_path import Run, heading
-from diorama_core.architecture.walls.wall_sequence import CORNER_SLACK_RAD, WallPiece, chained, meeting_point
+from diorama_core.architecture.walls.wall_sequence import CORNER_SLACK_RAD, WallPiece, chain_runs, meeting_point
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
 from diorama_core.progress import Progress
 from diorama_core.provenance import RoomMethod, RoomSource
@@ -57,13 +57,13 @@ class PhotoRoom:
         cues = gather_room_cues(inputs.photo.rgb, geometry.camera, objects, geometry.cuboids, self.settings.cues)
         progress.report(0.4, "Following the walls from left to right")
         scorer = ChainScorer(cues, level_view(inputs.photo.rgb, cues, objects), self.settings)
-        chain = found_chain(scorer, self.settings.search)
+        chain = find_chain(scorer, self.settings.search)
         sure = GUESS_CONFIDENCE + (0.9 - GUESS_CONFIDENCE) * scorer.support(chain)
         pieces = _pieces(chain, scorer, sure, self.settings.search)
         top_m = max(chain.ceiling_m, _highest(cues, self.settings.search))
         hung = any(s.parent == "ceiling" for s in geometry.supports)
         openings, pointed = with_passages(((),) * len(pieces), objects, pieces, geometry.camera, top_m)
-        planes = coloured(
+        planes = colour_planes(
             _planes(pieces, top_m, geometry, hung, openings, self.settings.search),
             inputs.photo.rgb,
             geometry.camera,
@@ -81,14 +81,14 @@ class PhotoRoom:
         )
 
 
-def found_chain(scorer: ChainScorer, settings: RoomSearchSettings) -> Chain:
+def find_chain(scorer: ChainScorer, settings: RoomSearchSettings) -> Chain:
     """The cheapest chain of walls, begun below several ceilings: which walls are best depends on how high they are."""
     walls = candidate_walls(scorer.cues, settings)
     above_camera_m = float(scorer.cues.camera.position[2]) + settings.above_camera_m
     begun = (best_chain(scorer, walls, max(height, above_camera_m)) for height in settings.first_ceilings_m)
     ceilings_m = dict.fromkeys(best_ceiling(scorer, chain, CEILINGS_M) for chain in begun)
     chains = [best_chain(scorer, walls, ceiling_m) for ceiling_m in ceilings_m]
-    return refined(scorer, min(chains, key=lambda chain: chain.cost), CEILINGS_M)
+    return refine_chain(scorer, min(chains, key=lambda chain: chain.cost), CEILINGS_M)
 
 
 def candidate_walls(cues: RoomCues, settings: RoomSearchSettings) -> PhotoWalls:
@@ -134,11 +134,11 @@ def _pieces(
     ]
     for k in range(len(runs) - 1):
         corner = meeting_point(runs[k].wall, runs[k + 1].wall)
-        if corner is None or not _joined(chain, k, ends, eye, settings):
+        if corner is None or not _is_joined(chain, k, ends, eye, settings):
             continue
         at = float(heading(corner, eye))
         runs[k], runs[k + 1] = replace(runs[k], last=at), replace(runs[k + 1], first=at)
-    return chained(runs, (float(view.edges_rad[0]), float(view.edges_rad[-1])), eye)
+    return chain_runs(runs, (float(view.edges_rad[0]), float(view.edges_rad[-1])), eye)
 
 
 def _as_candidate(walls: PhotoWalls, k: int, sure: float = 0.0, *, settings: RoomSearchSettings) -> WallCandidate:
@@ -172,7 +172,7 @@ def _with_room(
         return apart
     at_eye = chain.walls.normals @ eye
     farther = (apart.offsets - at_eye) / (chain.walls.offsets - at_eye)
-    joined = [_joined(chain, k, ends, eye, settings) for k in range(len(chain.walls) - 1)]
+    joined = [_is_joined(chain, k, ends, eye, settings) for k in range(len(chain.walls) - 1)]
     groups = np.cumsum([0, *(not one for one in joined)])
     most = np.array([farther[groups == group].max() for group in groups])
     together = replace(chain.walls, offsets=at_eye + (chain.walls.offsets - at_eye) * most)
@@ -180,7 +180,7 @@ def _with_room(
     return together if cost[1] < cost[0] + settings.corner_cost else apart
 
 
-def _joined(
+def _is_joined(
     chain: Chain, k: int, ends: Float[np.ndarray, "r1"], eye: Float[np.ndarray, "2"], settings: RoomSearchSettings
 ) -> bool:
     """Whether a wall and the next one meet where the one ends."""

@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from diorama_core.architecture.single_view.level_view import LevelView, projected, response
+from diorama_core.architecture.single_view.level_view import LevelView, project_directions, response
 from diorama_core.architecture.single_view.room_cues import (
     EDGE_THRESHOLD,
     MAX_CEILING_M,
@@ -40,7 +40,7 @@ class PhotoWalls:
     def __len__(self) -> int:
         return len(self.offsets)
 
-    def chosen(self, index: Int[np.ndarray, "v"]) -> PhotoWalls:
+    def select(self, index: Int[np.ndarray, "v"]) -> PhotoWalls:
         """Some of them."""
         return PhotoWalls(self.normals[index], self.offsets[index], self.directions[index])
 
@@ -134,8 +134,8 @@ class ChainScorer:
         colour = self.settings.search.region_weight * v.floor_ratio * v.share
         level = self.settings.search.line_weight * v.lines[..., 2]
         along = (v.lines[..., 0], v.lines[..., 1], v.lines[..., 0] + v.lines[..., 1])
-        uprights = [_summed(0.5 * colour + self.settings.search.line_weight * lines) for lines in along]
-        return _summed(-0.5 * colour + level), _summed(0.5 * colour + level), np.stack(uprights)
+        uprights = [_cumulative_sum(0.5 * colour + self.settings.search.line_weight * lines) for lines in along]
+        return _cumulative_sum(-0.5 * colour + level), _cumulative_sum(0.5 * colour + level), np.stack(uprights)
 
     def _surfaces(
         self, walls: PhotoWalls, low: _BelowCeiling, top: Float[np.ndarray, "w m"]
@@ -154,7 +154,7 @@ class ChainScorer:
         skirting = self._skirting(chain.walls, near)
         sides.append((skirting, np.where(skirting > 0.0, sides[0][1], 0.0)))
         eye = float(self.cues.camera.position[2])
-        colour, known = (_summed(x) for x in (self.view.floor_ratio * self.view.share, self._coloured()))
+        colour, known = (_cumulative_sum(x) for x in (self.view.floor_ratio * self.view.share, self._colour_weights()))
         supports = []
         for run, (first, last) in enumerate(pairwise(chain.borders)):
             columns = slice(first, last)
@@ -174,7 +174,7 @@ class ChainScorer:
             )
         return np.array(supports)
 
-    def _coloured(self) -> Float[np.ndarray, "m k"]:
+    def _colour_weights(self) -> Float[np.ndarray, "m k"]:
         return np.where(self.view.floor_ratio != 0, self.view.share, 0.0)
 
     def _edge(
@@ -188,7 +188,7 @@ class ChainScorer:
         across = np.stack([np.sin(v.middles_rad), np.cos(v.middles_rad)], axis=-1)
         rise = height_m - e.camera.position[2]
         directions = np.concatenate([near[..., None] * across, np.full((*near.shape, 1), rise)], axis=-1)
-        pixels, inside = projected(e.camera, directions)
+        pixels, inside = project_directions(e.camera, directions)
         # The boundary's course from one heading to the next, as long as it is in the picture.
         step = np.linalg.norm(np.diff(pixels, axis=1, append=pixels[:, -1:]), axis=-1)
         step[:, -1] = step[:, -2] if step.shape[1] > 1 else 0.0
@@ -280,7 +280,7 @@ class ChainScorer:
         reach = self._reach_at(walls, borders).T
         nearest = np.where(np.isfinite(reach), reach, 50.0)
         eye = float(self.cues.camera.position[2])
-        summed = _summed(v.upright[1:-1])
+        summed = _cumulative_sum(v.upright[1:-1])
         seen = _upto_rows(summed, v.row_of((ceiling_m - eye) / nearest)) - _upto_rows(summed, v.row_of(-eye / nearest))
         seen = self.settings.search.upright_weight * np.maximum(seen, 0.0)
         width = float(v.edges_rad[1] - v.edges_rad[0])
@@ -315,11 +315,11 @@ def best_chain(scorer: ChainScorer, walls: PhotoWalls, ceiling_m: float) -> Chai
         labels[number - 1] = came_from[number, labels[number]]
     breaks = np.array([0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), count])
     return Chain(
-        walls.chosen(labels[breaks[:-1]]), breaks, ceiling_m, float(total.min()) + scorer.ceiling_prior(ceiling_m)
+        walls.select(labels[breaks[:-1]]), breaks, ceiling_m, float(total.min()) + scorer.ceiling_prior(ceiling_m)
     )
 
 
-def refined(scorer: ChainScorer, chain: Chain, heights_m: Float[np.ndarray, "c"]) -> Chain:
+def refine_chain(scorer: ChainScorer, chain: Chain, heights_m: Float[np.ndarray, "c"]) -> Chain:
     """The chain with its ceiling and its walls' places set more finely, in turns."""
     for share in (1.0, 0.4, 0.15):
         chain = best_chain(scorer, nearby_walls(scorer, chain.walls, share), best_ceiling(scorer, chain, heights_m))
@@ -333,7 +333,7 @@ def nearby_walls(scorer: ChainScorer, walls: PhotoWalls, share: float) -> PhotoW
     offsets = eye[:, None] + (walls.offsets - eye)[:, None] * (1.0 + share * FINE)
     repeat = np.repeat(np.arange(len(walls)), len(FINE))
     _, first = np.unique(np.stack([repeat, offsets.ravel().round(5)], axis=1), axis=0, return_index=True)
-    return PhotoWalls(walls.normals[repeat], offsets.ravel(), walls.directions[repeat]).chosen(first)
+    return PhotoWalls(walls.normals[repeat], offsets.ravel(), walls.directions[repeat]).select(first)
 
 
 def best_ceiling(scorer: ChainScorer, chain: Chain, heights_m: Float[np.ndarray, "c"]) -> float:
@@ -370,7 +370,7 @@ def leaves(
     return np.where((last > np.maximum(first, 0.0)), last, np.inf)
 
 
-def _summed(cells: Float[np.ndarray, "m k"]) -> Float[np.ndarray, "m k1"]:
+def _cumulative_sum(cells: Float[np.ndarray, "m k"]) -> Float[np.ndarray, "m k1"]:
     return np.concatenate([np.zeros((len(cells), 1)), np.cumsum(cells, axis=1)], axis=1)
 
 

@@ -15,8 +15,8 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
-from diorama_core.architecture.texture.continuation import completed
-from diorama_core.architecture.texture.level_light import levelled
+from diorama_core.architecture.texture.continuation import complete_texture
+from diorama_core.architecture.texture.level_light import level_light
 from diorama_core.architecture.texture.plane_textures import PhotoView, PlaneView, RoomPicture, is_enough, texel_points
 from diorama_core.architecture.texture.quilting import broad_shading
 from diorama_core.scene.types import Architecture
@@ -73,12 +73,12 @@ def best_view_textures(
         if not views or not is_enough(np.any([v.shown for v in views.values()], axis=0), pixel_m, plane):
             continue
         chosen = [(views[k], gains[k], sharpness[k]) for k in sorted(views)]
-        colours, owned, is_covered = _blended(chosen, pixel_m)
+        colours, owned, is_covered = _blend_views(chosen, pixel_m)
         if is_covered.any() and owned.any():
             ground = plane.role == "floor"
-            colours = levelled(colours, owned, pixel_m) if ground else colours
+            colours = level_light(colours, owned, pixel_m) if ground else colours
             sharp = np.any([v.sharp for v in views.values()], axis=0)
-            textures[plane.id] = completed(
+            textures[plane.id] = complete_texture(
                 colours, is_covered, plane.colour, pixel_m, owned, ground=ground, sharp=sharp
             )
     return textures
@@ -124,7 +124,7 @@ def _ratios(a: PlaneView, b: PlaneView, pixel_m: float) -> Float[np.ndarray, "n 
     return np.asarray(np.log(one[light] / other[light]), dtype=np.float64)
 
 
-def _blended(
+def _blend_views(
     views: Sequence[tuple[PlaneView, Float[np.ndarray, "3"], float]], pixel_m: float
 ) -> tuple[Float32[np.ndarray, "h w 3"], Bool[np.ndarray, "h w"], Bool[np.ndarray, "h w"]]:
     """Colours, which of them are the plane's own material, and where any photo sees it.

@@ -49,7 +49,7 @@ def _doubtful(shape: tuple[int, int], objects: tuple[DetectedObject, ...]) -> Bo
     return within
 
 
-def coloured(
+def colour_planes(
     planes: tuple[Plane, ...], rgb: UInt8[np.ndarray, "h w 3"], camera: Camera, objects: tuple[DetectedObject, ...]
 ) -> tuple[Plane, ...]:
     """The planes with the colour that most of their visible pixels have.

@@ -61,7 +61,7 @@ class ContinuationSettings:
 SETTINGS = ContinuationSettings()
 
 
-def completed(
+def complete_texture(
     colours: Float32[np.ndarray, "h w 3"],
     seen: Bool[np.ndarray, "h w"],
     plain: tuple[float, float, float],

@@ -97,7 +97,7 @@ def object_colours(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedOb
     return tuple(colours)
 
 
-def continued_objects(
+def find_continued_objects(
     colours: Float32[np.ndarray, "h w 3"],
     is_plane: Bool[np.ndarray, "h w"],
     foreign: Bool[np.ndarray, "h w"],

@@ -169,7 +169,7 @@ def floor_texels(
     is_floor, others = _with_pattern(is_floor, picture, np.stack([rows, columns]), main, pixel_m)
     if others:
         is_floor |= _turning_into(is_floor, others, _change(picture, seen, pixel_m), pixel_m)
-    return is_floor & ~_grown_pieces(seen & ~is_floor, pixel_m)
+    return is_floor & ~_grow_pieces(seen & ~is_floor, pixel_m)
 
 
 def _with_pattern(
@@ -204,7 +204,7 @@ def _with_pattern(
         is_compared |= texels
         other = np.zeros(is_floor.shape, dtype=bool)
         other[rows, columns] = texels
-        if _intermingled(is_floor, other, pixel_m):
+        if _is_intermingled(is_floor, other, pixel_m):
             is_floor = is_floor | other
         else:
             others.append(other & lit_alike)
@@ -279,7 +279,7 @@ def _main_colour(
         colours.append(middle)
         covers.append(float(weight[near].sum()) * spread * (SETTINGS.without_contact + touched))
         scores.append(covers[-1] * float(np.exp(-0.5 * (off**2).sum())))
-    return _lit(int(np.argmax(scores)), np.array(colours), np.array(covers))
+    return _select_unshaded_colour(int(np.argmax(scores)), np.array(colours), np.array(covers))
 
 
 def _mode(
@@ -310,7 +310,9 @@ def _spread(places: Float[np.ndarray, "n 2"], weight: Float[np.ndarray, "n"]) ->
     return float(np.hypot(*halves))
 
 
-def _lit(best: int, colours: Float[np.ndarray, "k 3"], covers: Float[np.ndarray, "k"]) -> Float[np.ndarray, "3"]:
+def _select_unshaded_colour(
+    best: int, colours: Float[np.ndarray, "k 3"], covers: Float[np.ndarray, "k"]
+) -> Float[np.ndarray, "3"]:
     """A colour, or the lighter one that it is a shade of and that covers clearly more."""
     shade = np.array([bool(_shades_of(lighter, colours[best : best + 1])[0]) for lighter in colours])
     lighter = shade & (covers > SETTINGS.shade_cover * covers[best])
@@ -352,7 +354,7 @@ def _matches_material(lab: Float[np.ndarray, "n 3"], main: Float[np.ndarray, "3"
     return np.asarray((near <= allowed).all(axis=1) & ~shadow)
 
 
-def _intermingled(one: Bool[np.ndarray, "h w"], other: Bool[np.ndarray, "h w"], pixel_m: float) -> bool:
+def _is_intermingled(one: Bool[np.ndarray, "h w"], other: Bool[np.ndarray, "h w"], pixel_m: float) -> bool:
     """Whether each of two colours has the other near over most of its area, and the other lies between the first.
 
     A skirting board along a narrow strip of floor is near all of it, but on one side only.
@@ -377,7 +379,7 @@ def _is_between(mask: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarra
     return np.asarray(sides[0] | sides[1])
 
 
-def _grown_pieces(foreign: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:
+def _grow_pieces(foreign: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarray, "h w"]:
     """Foreign pieces without specks of grain, with their rims."""
     pieces = cv2.morphologyEx(foreign.astype(np.uint8), cv2.MORPH_OPEN, _disc(SETTINGS.speck_m, pixel_m))
     return cv2.dilate(pieces, _disc(SETTINGS.rim_m, pixel_m)).astype(bool) | foreign

@@ -36,7 +36,7 @@ class LevelLightSettings:
 SETTINGS = LevelLightSettings()
 
 
-def levelled(
+def level_light(
     colours: Float32[np.ndarray, "h w 3"], is_plane: Bool[np.ndarray, "h w"], pixel_m: float
 ) -> Float32[np.ndarray, "h w 3"]:
     """The colours of a floor as even light shows them; meaningful where they are its own.

@@ -10,10 +10,10 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
 from diorama_core.architecture.texture.colours import object_pixels
-from diorama_core.architecture.texture.continuation import completed
-from diorama_core.architecture.texture.continued_objects import continued_objects, cut_patches, object_colours
+from diorama_core.architecture.texture.continuation import complete_texture
+from diorama_core.architecture.texture.continued_objects import cut_patches, find_continued_objects, object_colours
 from diorama_core.architecture.texture.floor_material import contact_pixels, floor_texels, white_level
-from diorama_core.architecture.texture.level_light import levelled
+from diorama_core.architecture.texture.level_light import level_light
 from diorama_core.artefacts import SURE_MASK, DetectedObject, Inputs
 from diorama_core.geometry.casting import cast_planes
 from diorama_core.geometry.planes import plane_rectangle
@@ -140,8 +140,8 @@ def plane_textures(
         seen = view.plane_view(plane, architecture.planes, points, pixel_m)
         if seen is not None and is_enough(seen.shown, pixel_m, plane):
             ground = plane.role == "floor"
-            colours = levelled(seen.colours, seen.own, pixel_m) if ground else seen.colours
-            textures[plane.id] = completed(
+            colours = level_light(seen.colours, seen.own, pixel_m) if ground else seen.colours
+            textures[plane.id] = complete_texture(
                 colours, seen.seen, plane.colour, pixel_m, seen.own, ground=ground, sharp=seen.sharp
             )
     return textures
@@ -154,7 +154,7 @@ class PhotoView:
         shape = picture.rgb.shape[:2]
         unsure = [o for o in picture.objects if o.mask_confidence < SURE_MASK]
         masked = object_pixels(shape, picture.objects) | cut_patches(picture.rgb, unsure)
-        masked = _grown(masked if picture.unmarked is None else masked | picture.unmarked)
+        masked = _grow_mask(masked if picture.unmarked is None else masked | picture.unmarked)
         hidden = masked | _boxes(shape, unsure)
         rgb, painted = picture.rgb, np.zeros(shape, dtype=bool)
         if picture.filler is not None and hidden.any():
@@ -182,7 +182,7 @@ class PhotoView:
         ground = plane.role == "floor"
         # Boxes of objects hide nearly all of a floor; there, what an unsure mask left over is told by its colour.
         hidden = self._masked if ground else self._hidden
-        colours, seen = _seen_colours(self._rgb, hidden, self._camera, planes, plane, points)
+        colours, seen = _sample_visible_colours(self._rgb, hidden, self._camera, planes, plane, points)
         share = _photo_share(points, plane, self._camera)
         if ground:
             contact = _sample_at_texels(self._contact, self._camera, points) & seen
@@ -201,7 +201,7 @@ class PhotoView:
                 foreign = seen & ~is_plane
                 where = self._camera.project(points[foreign])
                 longest = max(self._rgb.shape[:2])
-                stray |= continued_objects(colours, is_plane, foreign, where, self._of_objects, pixel_m, longest)
+                stray |= find_continued_objects(colours, is_plane, foreign, where, self._of_objects, pixel_m, longest)
             seen = _without_islands(seen & ~stray, ISLAND_M / pixel_m)
         if self._painted.any():
             share = np.where(_sample_at_texels(self._painted, self._camera, points), PAINTED * share, share)
@@ -231,7 +231,7 @@ def _with_grain(floor: Bool[np.ndarray, "h w"], pixel_m: float) -> Bool[np.ndarr
     return cv2.morphologyEx(floor.astype(np.uint8), cv2.MORPH_CLOSE, around).astype(bool)
 
 
-def _grown(hidden: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
+def _grow_mask(hidden: Bool[np.ndarray, "h w"]) -> Bool[np.ndarray, "h w"]:
     """A wider margin, and gaps between legs and leaves closed: what shows there is mostly shadow and rims."""
     rim = max(2, round(RIM * max(hidden.shape)))
     gap = 2 * rim
@@ -320,7 +320,7 @@ def texel_points(plane: Plane) -> tuple[Float[np.ndarray, "h w 3"], float]:
     return origin + grid @ axes.T, pixel_m
 
 
-def _seen_colours(
+def _sample_visible_colours(
     rgb: UInt8[np.ndarray, "hp wp 3"],
     hidden: Bool[np.ndarray, "hp wp"],
     camera: Camera,

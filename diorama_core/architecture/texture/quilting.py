@@ -69,7 +69,9 @@ def detail_continued(
             continue
         y, x = finder.best(out[window], known[window])
         block = detail[y : y + size, x : x + size]
-        out[window] = np.where(wanted[..., None], block, _blended(out[window], block, known[window], source[window]))
+        out[window] = np.where(
+            wanted[..., None], block, _blend_blocks(out[window], block, known[window], source[window])
+        )
         known[window] = True
     return np.asarray(np.where(seen[..., None], given, out), dtype=np.float32)
 
@@ -131,7 +133,7 @@ def _outward(seen: Bool[np.ndarray, "h w"], size: int) -> list[tuple[int, int]]:
     return [(r, c) for _, _, r, c in sorted(patches)]
 
 
-def _blended(
+def _blend_blocks(
     old: Float32[np.ndarray, "b b 3"],
     new: Float32[np.ndarray, "b b 3"],
     known: Bool[np.ndarray, "b b"],
@@ -177,7 +179,7 @@ class _Finder:
             weight = known[::SEARCH_STEP, ::SEARCH_STEP].astype(np.float32)
             cross = cv2.matchTemplate(self._picture, grey * weight, cv2.TM_CCORR)
             square = self._square_of(weight)
-            misfit = self._fitted(square - 2.0 * cross + float((weight * grey**2).sum()))
+            misfit = self._pad_to_grid(square - 2.0 * cross + float((weight * grey**2).sum()))
             costs = np.maximum(misfit[rows, columns], 0.0)
         else:
             costs = np.zeros(len(rows))
@@ -194,7 +196,7 @@ class _Finder:
             weight.tobytes(), lambda: cv2.matchTemplate(self._squares, weight, cv2.TM_CCORR)
         )
 
-    def _fitted(self, misfit: Float32[np.ndarray, "a b"]) -> Float32[np.ndarray, "p q"]:
+    def _pad_to_grid(self, misfit: Float32[np.ndarray, "a b"]) -> Float32[np.ndarray, "p q"]:
         """The misfits at the places' grid: reduced sizes may differ by one at the far ends."""
         wanted: tuple[int, int] = (self._places.shape[0], self._places.shape[1])
         padded = np.full(wanted, np.float32(np.inf))

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from jaxtyping import UInt8
 
-from diorama_core.architecture.texture.continuation import completed
+from diorama_core.architecture.texture.continuation import complete_texture
 from diorama_core.architecture.texture.plane_textures import MAX_SIDE_PX
 from diorama_core.geometry.planes import plane_axes, plane_rectangle
 from diorama_core.scene.types import Plane, Scene
@@ -23,7 +23,7 @@ MARK = "@"
 Pictures = Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
 
 
-def refitted_textures(
+def refit_textures(
     before: Scene, after: Scene, textures: Pictures
 ) -> tuple[Scene, dict[str, UInt8[np.ndarray, "_ _ 3"]]]:
     """The edited scene with every picture at the scale it had, and the pictures made for that, by name.
@@ -37,7 +37,7 @@ def refitted_textures(
         after: The same scene, edited.
         textures: The pictures of `before`, by name.
     """
-    if _scaled(before, after):
+    if _is_scaled(before, after):
         return after, {}
     made: dict[str, UInt8[np.ndarray, "_ _ 3"]] = {}
     planes = []
@@ -45,21 +45,21 @@ def refitted_textures(
         # Below a finish is the photo's picture, which follows; the finish itself is made anew for its new rectangle.
         name = plane.texture if plane.finish is None else plane.photo_texture
         old = before.plane(plane.id) if before.has_plane(plane.id) else _cut_from(before, name)
-        if name is None or old is None or name not in textures or not _resized(old, plane):
+        if name is None or old is None or name not in textures or not _is_resized(old, plane):
             planes.append(plane)
             continue
         if name != (old.texture if old.finish is None else old.photo_texture):
             planes.append(plane)
             continue
         new = _name(name, plane)
-        made[new] = refitted(textures[name], old, plane)
+        made[new] = refit_picture(textures[name], old, plane)
         planes.append(replace(plane, texture=new) if plane.finish is None else replace(plane, photo_texture=new))
     if not made:
         return after, {}
     return replace(after, architecture=replace(after.architecture, planes=tuple(planes))), made
 
 
-def refitted(picture: UInt8[np.ndarray, "h w 3"], before: Plane, after: Plane) -> UInt8[np.ndarray, "h2 w2 3"]:
+def refit_picture(picture: UInt8[np.ndarray, "h w 3"], before: Plane, after: Plane) -> UInt8[np.ndarray, "h2 w2 3"]:
     """A plane's picture cut and continued to its new rectangle, with everything left where it was on the plane."""
     origin, axes, extents = plane_rectangle(before)
     origin_after, _, extents_after = plane_rectangle(after)
@@ -75,7 +75,7 @@ def refitted(picture: UInt8[np.ndarray, "h w 3"], before: Plane, after: Plane) -
     colours = cv2.remap(picture, lookup, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE).astype(np.float32)
     if seen.all() or not seen.any():
         return colours.round().astype(np.uint8)
-    return completed(colours, seen, after.colour, pixel_m, seen, ground=after.role == "floor")
+    return complete_texture(colours, seen, after.colour, pixel_m, seen, ground=after.role == "floor")
 
 
 def _cut_from(before: Scene, name: str | None) -> Plane | None:
@@ -84,7 +84,7 @@ def _cut_from(before: Scene, name: str | None) -> Plane | None:
     return next((p for p in planes if name == (p.texture if p.finish is None else p.photo_texture)), None)
 
 
-def _resized(before: Plane, after: Plane) -> bool:
+def _is_resized(before: Plane, after: Plane) -> bool:
     """Whether the rectangle differs within the plane; one that only moved along its normal is the same."""
     turned = np.subtract(plane_axes(before.normal), plane_axes(after.normal))
     if float(np.abs(turned).max()) > SAME_M:
@@ -95,7 +95,7 @@ def _resized(before: Plane, after: Plane) -> bool:
     return bool(np.abs(shift).max() > SAME_M or np.abs(extents_after - extents).max() > SAME_M)
 
 
-def _scaled(before: Scene, after: Scene) -> bool:
+def _is_scaled(before: Scene, after: Scene) -> bool:
     if before.camera is None or after.camera is None:
         return False
     return bool(np.abs(before.camera.position - after.camera.position).max() > 1e-9)

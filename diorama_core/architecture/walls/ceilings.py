@@ -87,7 +87,7 @@ def _slopes(surface: MeasuredSurface) -> tuple[CeilingPiece, ...]:
         if free.sum() < SETTINGS.min_slope_points or len(slopes) == SETTINGS.max_slopes:
             break
         member = free & (surface.normals @ _commonest(surface, free) > GROWTH_COSINE)
-        piece, taken = _fitted(surface, member)
+        piece, taken = _fit_slope(surface, member)
         free &= ~(taken | member)
         if piece is not None and not any(_alike(piece, other) for other in slopes):
             slopes.append(piece)
@@ -108,7 +108,7 @@ def _commonest(surface: MeasuredSurface, free: Bool[np.ndarray, "n"]) -> Float[n
     return np.asarray(mean / np.linalg.norm(mean))
 
 
-def _fitted(
+def _fit_slope(
     surface: MeasuredSurface, member: Bool[np.ndarray, "n"]
 ) -> tuple[CeilingPiece | None, Bool[np.ndarray, "n"]]:
     """The plane through most of the members, if it can be a ceiling, and the points it explains."""
@@ -124,7 +124,7 @@ def _fitted(
         normal, offset = surface.world_plane(inliers)
         near = np.abs(surface.points @ normal - offset) < tolerance_m(surface.depth_m)
         inliers = near & (surface.normals @ normal > GROWTH_COSINE) & ~surface.is_object
-    normal, offset = _snapped(surface, inliers, normal, offset)
+    normal, offset = _snap_slope(surface, inliers, normal, offset)
     beyond = surface.points @ normal < offset - 0.1 - 2.0 * tolerance_m(surface.depth_m)
     area = float(surface.area_m2[inliers].sum())
     possible = (
@@ -137,7 +137,7 @@ def _fitted(
     return (CeilingPiece(normal, offset, area) if possible else None), inliers
 
 
-def _snapped(
+def _snap_slope(
     surface: MeasuredSurface, inliers: Bool[np.ndarray, "n"], normal: Float[np.ndarray, "3"], offset: float
 ) -> tuple[Float[np.ndarray, "3"], float]:
     """The slope turned to fall along a room axis, where nearly all its points still lie on it."""

@@ -93,11 +93,11 @@ def _rays(
     on = inside & (np.abs(depth_behind) < tolerance_m(surface.depth_m))
     shape = (int(np.ceil(top_m / settings.cell_m)), int(np.ceil(piece.length_m / settings.cell_m)))
 
-    def counted(chosen: Bool[np.ndarray, "n"]) -> Float[np.ndarray, "v u"]:
+    def count_per_cell(chosen: Bool[np.ndarray, "n"]) -> Float[np.ndarray, "v u"]:
         index = (v[chosen] / settings.cell_m).astype(int) * shape[1] + (u[chosen] / settings.cell_m).astype(int)
         return np.bincount(index, minlength=shape[0] * shape[1]).reshape(shape).astype(np.float64)
 
-    return counted(beyond), counted(on)
+    return count_per_cell(beyond), count_per_cell(on)
 
 
 def _opening(stats: np.ndarray, piece: WallPiece, top_m: float, settings: WallSettings) -> WallOpening | None:

@@ -83,18 +83,18 @@ def _opening(
     middle = camera.rays(np.array([[(x1 + x2) / 2, (y1 + y2) / 2]]))
     nearest: tuple[float, int] | None = None
     for index, piece in enumerate(pieces):
-        reach, u, v = _met(piece, camera, middle)
+        reach, u, v = _intersect_wall(piece, camera, middle)
         on = reach[0] > 0 and 0 < u[0] < piece.length_m and 0 < v[0] < top_m
         if on and (nearest is None or reach[0] < nearest[0]):
             nearest = float(reach[0]), index
     if nearest is None:
         return None
     piece = pieces[nearest[1]]
-    reach, u, v = _met(piece, camera, rays)
+    reach, u, v = _intersect_wall(piece, camera, rays)
     if (reach <= 0).any():
         return None
     start = np.array([u[0], u[1], v[3], v[2]])
-    left, right, bottom, top = _fitted(start, detected, piece, camera, settings)
+    left, right, bottom, top = _fit_rectangle(start, detected, piece, camera, settings)
     left, right = max(left, settings.frame_m), min(right, piece.length_m - settings.frame_m)
     bottom, top = (0.0 if bottom < settings.sill_m else bottom), min(top, top_m - settings.frame_m)
     if min(right - left, top - bottom) < settings.min_side_m or (right - left) * (top - bottom) < settings.min_area_m2:
@@ -102,7 +102,7 @@ def _opening(
     return nearest[1], WallOpening(left, right, bottom, top)
 
 
-def _met(
+def _intersect_wall(
     piece: WallPiece, camera: Camera, rays: Float[np.ndarray, "n 3"]
 ) -> tuple[Float[np.ndarray, "n"], Float[np.ndarray, "n"], Float[np.ndarray, "n"]]:
     """Where rays meet a wall's plane: their reach (below 0 behind the camera), metres along its foot, and heights."""
@@ -114,7 +114,7 @@ def _met(
     return reach, (points[:, :2] - piece.start) @ along, points[:, 2]
 
 
-def _fitted(
+def _fit_rectangle(
     start: Float[np.ndarray, "4"], detected: DetectedObject, piece: WallPiece, camera: Camera, settings: WallSettings
 ) -> tuple[float, float, float, float]:
     """Left, right, bottom and top of the rectangle whose picture the box surrounds.

@@ -54,7 +54,7 @@ class MeasuredSurface:
         return normal, float(normal @ self.camera_position) - 1.0 / max(length, 1e-12)
 
 
-def measured_surface(
+def measure_surface(
     depth_m: Float32[np.ndarray, "h w"],
     camera: Camera,
     is_object: Bool[np.ndarray, "h w"],
@@ -67,7 +67,7 @@ def measured_surface(
         camera: Its intrinsics are those of the depth map.
         is_object: Pixels of objects that were pointed at.
     """
-    depth, k = averaged(depth_m, camera.intrinsics, settings.grid_px, settings)
+    depth, k = downsample_depth(depth_m, camera.intrinsics, settings.grid_px, settings)
     calm, normals_camera, noise = calm_planes(depth, k, settings)
     valid = calm > 0
     pixels = pixel_centres(k.width, k.height)
@@ -91,7 +91,7 @@ def measured_surface(
     )
 
 
-def averaged(
+def downsample_depth(
     depth_m: Float32[np.ndarray, "h w"], intrinsics: Intrinsics, max_side: int, settings: WallSettings = SETTINGS
 ) -> tuple[Float[np.ndarray, "hs ws"], Intrinsics]:
     """The map at about `max_side` pixels: blocks are averaged in inverse depth where they hold one surface.
@@ -201,7 +201,7 @@ def _best_around(
     """Fit that deviates least of those to the windows centred on a pixel and up to `radius` beside it."""
     best_abc, best = fit
     for rows, columns in ((0, radius), (0, -radius), (radius, 0), (-radius, 0)):
-        abc, spread = (_shifted(v, rows, columns) for v in fit)
+        abc, spread = (_shift(v, rows, columns) for v in fit)
         # Off-centre windows are taken only where they are clearly better, or noise would choose.
         better = spread < 0.7 * best
         best = np.where(better, spread, best)
@@ -209,7 +209,7 @@ def _best_around(
     return best_abc, best
 
 
-def _shifted(values: np.ndarray, rows: int, columns: int) -> np.ndarray:
+def _shift(values: np.ndarray, rows: int, columns: int) -> np.ndarray:
     """Values of the pixel that many rows and columns away; outside the picture the border repeats."""
     height, width = values.shape[:2]
     i = np.clip(np.arange(height) + rows, 0, height - 1)

@@ -141,12 +141,12 @@ def _parallel_walls(
             break
         centre = low + (peak + 0.5) * SETTINGS.offset_bin_m
         near = free & (np.abs(offsets - centre) < 2.5 * SETTINGS.offset_bin_m + tolerance_m(surface.depth_m))
-        walls += _refined(surface, near, normal, top_m)
+        walls += _fit_walls(surface, near, normal, top_m)
         free &= ~near
     return walls
 
 
-def _refined(
+def _fit_walls(
     surface: MeasuredSurface, near: Bool[np.ndarray, "n"], normal: Float[np.ndarray, "2"], top_m: float
 ) -> list[WallCandidate]:
     """The wall through a slice of points; where that cannot be one, the walls among its parts between gaps."""
@@ -157,16 +157,16 @@ def _refined(
     inliers &= (surface.normals[:, :2] @ fitted > np.cos(2.0 * GROWTH_RAD)) & ~surface.is_object
     if offset > surface.camera_position[:2] @ fitted - 0.1:
         return []
-    whole = _judged(surface, fitted, offset, inliers, top_m)
+    whole = _validate_wall(surface, fitted, offset, inliers, top_m)
     if whole is not None:
         return [whole]
     along = np.array([-fitted[1], fitted[0]])
-    parts = _parted(surface.points[:, :2] @ along, inliers)
-    judged = (_judged(surface, fitted, offset, part, top_m) for part in parts if len(parts) > 1)
+    parts = _split_at_gaps(surface.points[:, :2] @ along, inliers)
+    judged = (_validate_wall(surface, fitted, offset, part, top_m) for part in parts if len(parts) > 1)
     return [wall for wall in judged if wall is not None]
 
 
-def _judged(
+def _validate_wall(
     surface: MeasuredSurface,
     normal: Float[np.ndarray, "2"],
     offset: float,
@@ -177,13 +177,13 @@ def _judged(
     if inliers.sum() < SETTINGS.min_points or _spread(surface.points[inliers, 2]) < MIN_RISE_M:
         return None
     area = float(surface.area_m2[inliers].sum())
-    through = _seen_through(surface, normal, offset, inliers, top_m)
+    through = _see_through_share(surface, normal, offset, inliers, top_m)
     if area < SETTINGS.min_area_m2 or through > SETTINGS.max_seen_through:
         return None
     return WallCandidate(normal, offset, inliers, through, area)
 
 
-def _parted(reach_m: Float[np.ndarray, "n"], member: Bool[np.ndarray, "n"]) -> list[Bool[np.ndarray, "n"]]:
+def _split_at_gaps(reach_m: Float[np.ndarray, "n"], member: Bool[np.ndarray, "n"]) -> list[Bool[np.ndarray, "n"]]:
     """Members split wherever none lies within `GAP_M` along the wall."""
     chosen = np.flatnonzero(member)
     if len(chosen) == 0:
@@ -260,7 +260,7 @@ def _axis_aligned_line(
     return axis, float(np.average(offsets[core], weights=weights[core])) if core.any() else centre
 
 
-def _seen_through(
+def _see_through_share(
     surface: MeasuredSurface,
     normal: Float[np.ndarray, "2"],
     offset: float,

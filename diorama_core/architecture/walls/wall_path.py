@@ -88,13 +88,13 @@ def wall_runs(
     """
     if not walls:
         return []
-    headings = _divided(surface, view)
+    headings = _bin_headings(surface, view)
     runs = _cheapest(surface, walls, headings, top_m)
     returns = _returns(surface, runs, headings, top_m)
     return _cheapest(surface, walls + returns, headings, top_m) if returns else runs
 
 
-def _divided(surface: MeasuredSurface, view: tuple[float, float]) -> _Headings:
+def _bin_headings(surface: MeasuredSurface, view: tuple[float, float]) -> _Headings:
     edges = np.linspace(view[0], view[1], SETTINGS.heading_bins + 1)
     of_point = ((heading(surface.points[:, :2], surface.camera_position[:2]) - view[0]) / (edges[1] - edges[0])).astype(
         int

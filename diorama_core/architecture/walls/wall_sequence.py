@@ -56,12 +56,15 @@ def outline(
     runs = wall_runs(surface, walls, view, top_m)
     if not runs:
         return ()
-    return chained(
-        _merged(_closed(_merged(runs, origin, settings), surface, view), origin, settings), view, origin, settings
+    return chain_runs(
+        _merge_runs(_fill_gaps(_merge_runs(runs, origin, settings), surface, view), origin, settings),
+        view,
+        origin,
+        settings,
     )
 
 
-def chained(
+def chain_runs(
     runs: list[Run], view: tuple[float, float], origin: Float[np.ndarray, "2"], settings: WallSettings = SETTINGS
 ) -> tuple[WallPiece, ...]:
     """Runs as pieces that meet.
@@ -84,7 +87,7 @@ def chained(
     return tuple(p for p in pieces if p.length_m > 0.02)
 
 
-def _merged(runs: list[Run], origin: Float[np.ndarray, "2"], settings: WallSettings) -> list[Run]:
+def _merge_runs(runs: list[Run], origin: Float[np.ndarray, "2"], settings: WallSettings) -> list[Run]:
     """Neighbouring runs of what is about the same wall become one, whatever was unknown between them."""
     out: list[Run] = []
     for run in runs:
@@ -112,7 +115,7 @@ def _are_same_wall(a: Run, b: Run, origin: Float[np.ndarray, "2"], settings: Wal
     return max(apart) < settings.alike_m + settings.alike_per_m * _range(minor, origin, settings)
 
 
-def _closed(runs: list[Run], surface: MeasuredSurface, view: tuple[float, float]) -> list[Run]:
+def _fill_gaps(runs: list[Run], surface: MeasuredSurface, view: tuple[float, float]) -> list[Run]:
     """The runs with assumed walls put where no wall leads: behind what is measured there."""
     origin = surface.camera_position[:2]
     headings = heading(surface.points[:, :2], origin)
@@ -122,12 +125,12 @@ def _closed(runs: list[Run], surface: MeasuredSurface, view: tuple[float, float]
         first, last = ends[2 * number], ends[2 * number + 1]
         seen = (headings >= first) & (headings <= last) & (surface.points[:, 2] > 0.1)
         if last - first > GAP_RAD and seen.sum() >= 50:
-            out.append(Run(_assumed(surface.points[seen, :2], 0.5 * (first + last)), first, last))
+            out.append(Run(_assume_wall(surface.points[seen, :2], 0.5 * (first + last)), first, last))
         out += runs[number : number + 1]
     return out
 
 
-def _assumed(points: Float[np.ndarray, "n 2"], toward: float) -> WallCandidate:
+def _assume_wall(points: Float[np.ndarray, "n 2"], toward: float) -> WallCandidate:
     """A wall square to the room axis nearest to a heading, behind nearly all of the points."""
     quarter = round(toward / (np.pi / 2)) * (np.pi / 2)
     normal = -np.round([np.sin(quarter), np.cos(quarter)])
@@ -178,9 +181,9 @@ def _joint(
         fallback = corner if corner is not None else _nearest_on(a.wall, origin)
         return fallback, [], fallback
     if np.linalg.norm(end - origin) < np.linalg.norm(start - origin):
-        hidden = _hidden_path(a.wall, end, b.wall, start, origin, behind_right=False, settings=settings)
+        hidden = _find_hidden_path(a.wall, end, b.wall, start, origin, behind_right=False, settings=settings)
         return end, _pieces(hidden), hidden[-1]
-    hidden = _hidden_path(b.wall, start, a.wall, end, origin, behind_right=True, settings=settings)
+    hidden = _find_hidden_path(b.wall, start, a.wall, end, origin, behind_right=True, settings=settings)
     return hidden[-1], _pieces(hidden[::-1]), start
 
 
@@ -192,7 +195,7 @@ def _nearest_on(wall: WallCandidate, origin: Float[np.ndarray, "2"]) -> Float[np
     return origin + (wall.offset - float(origin @ wall.normal)) * wall.normal
 
 
-def _hidden_path(
+def _find_hidden_path(
     near: WallCandidate,
     edge: Float[np.ndarray, "2"],
     far: WallCandidate,

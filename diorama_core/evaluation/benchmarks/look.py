@@ -192,7 +192,7 @@ def _one_room(
     start = time.process_time()
     look: PhotoAppearance = dressing.evaluate(("appearance",))["appearance"]
     materials_s = time.process_time() - start
-    after = look.applied(after)
+    after = look.apply(after)
     flat = picture(replace(before, light=after.light), library, size=SIZE)
     dressed = picture(after, library, size=SIZE, textures=look.pictures)
     if show is not None:

@@ -22,7 +22,7 @@ import numpy as np
 from jaxtyping import Float, UInt8
 from numpy import ndarray
 
-from diorama_core.architecture.texture.colours import coloured
+from diorama_core.architecture.texture.colours import colour_planes
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.artefacts import DetectedObject
 from diorama_core.errors import Cancelled, InputError
@@ -77,7 +77,7 @@ def _floor_picture(
     room, camera = built.architecture.architecture, built.geometry.camera
     photo = replace(built.inputs.photo, rgb=built.illuminant.white_balance(built.inputs.photo.rgb))
     inputs = replace(built.inputs, photo=photo)
-    room = replace(room, planes=coloured(room.planes, inputs.photo.rgb, camera, objects))
+    room = replace(room, planes=colour_planes(room.planes, inputs.photo.rgb, camera, objects))
     assert room.floor is not None
     plain = np.rint(255 * np.array(room.floor.colour)).astype(np.uint8)[None, None]
     alone = {room.floor.id}

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.plainrecon.bounds import PlaneSheet, fitted_sheet, joined, upright
+from diorama_core.architecture.plainrecon.bounds import PlaneSheet, fit_sheet, join_walls, upright
 from diorama_core.architecture.plainrecon.clusters import planar_clusters
 from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.evaluation.metrics.architecture import architecture_scores, match_planes
@@ -41,7 +41,7 @@ def test_few_points_have_no_cluster():
 
 def test_a_sheet_is_the_smallest_rectangle_and_faces_the_eye():
     turned = np.array([np.cos(0.5), np.sin(0.5), 0.0])
-    sheet = fitted_sheet(grid([1.0, 3, 0.5], 2.0 * turned, [0, 0, 1.5]), np.zeros(3))
+    sheet = fit_sheet(grid([1.0, 3, 0.5], 2.0 * turned, [0, 0, 1.5]), np.zeros(3))
     sides = sorted(np.linalg.norm(sheet.corners - np.roll(sheet.corners, 1, axis=0), axis=1))
     assert sides == pytest.approx([1.5, 1.5, 2.0, 2.0], abs=0.02)
     assert sheet.offset < 0
@@ -65,7 +65,7 @@ def test_walls_come_down_to_the_floor_and_share_their_corner():
     side = PlaneSheet(
         np.array([-1.0, 0, 0]), -2.0, np.array([[2.0, 3.8, 0.1], [2, 0, 0.1], [2, 0, 2.1], [2, 3.8, 2.1]])
     )
-    a, b = joined(FLOOR, [back, side])
+    a, b = join_walls(FLOOR, [back, side])
     for wall in (a, b):
         assert (np.linalg.norm(wall.corners - [2.0, 4.0, 0.0], axis=1) < 1e-9).sum() == 1
         assert np.isclose(wall.corners[:, 2], 0.0).sum() == 2

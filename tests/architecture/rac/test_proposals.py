@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diorama_core.architecture.rac.proposals import MAX_PLANES, proposals
-from diorama_core.architecture.walls.surface import measured_surface
+from diorama_core.architecture.walls.surface import measure_surface
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 CAMERA = look(15, 8, fov_deg=80)
@@ -12,7 +12,7 @@ CAMERA = look(15, 8, fov_deg=80)
 
 def proposed(planes, cuboids=()):
     shot = shoot(CAMERA, planes, cuboids)
-    surface = measured_surface(shot.inputs.depth_m, CAMERA, shot.inputs.instances > 0)
+    surface = measure_surface(shot.inputs.depth_m, CAMERA, shot.inputs.instances > 0)
     return surface, proposals(surface)
 
 
@@ -32,9 +32,9 @@ def test_the_largest_planes_are_taken_and_nothing_gives_none():
     posts = tuple(cuboid(f"post{k}", (-1.6 + 0.8 * k, 2.0 + 0.3 * (k % 2), 0), (0.3, 0.3, 2.5)) for k in range(5))
     shot = shoot(CAMERA, box_room(-2.0, 2.0, 4.0, 2.5), posts)
     free = np.zeros_like(shot.inputs.instances, dtype=bool)
-    found = proposals(measured_surface(shot.inputs.depth_m, CAMERA, free))
+    found = proposals(measure_surface(shot.inputs.depth_m, CAMERA, free))
     assert len(found.normals) <= MAX_PLANES
-    nothing = proposals(measured_surface(shot.inputs.depth_m, CAMERA, ~free))
+    nothing = proposals(measure_surface(shot.inputs.depth_m, CAMERA, ~free))
     assert len(nothing.normals) == 0
     assert (nothing.segment == -1).all()
     assert found.offsets[[found.role(k) for k in range(len(found.normals))].index("floor")] == pytest.approx(

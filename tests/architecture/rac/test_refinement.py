@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from diorama_core.architecture.rac.proposals import proposals
-from diorama_core.architecture.rac.refinement import depth_error_m, hidden_ends, refined_layout
+from diorama_core.architecture.rac.refinement import depth_error_m, find_hidden_ends, refine_layout
 from diorama_core.architecture.rac.search import best_layout
 from diorama_core.architecture.rac.stage import RenderAndCompareRoom
-from diorama_core.architecture.walls.surface import measured_surface
+from diorama_core.architecture.walls.surface import measure_surface
 from diorama_core.evaluation.metrics.architecture import architecture_scores
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Plane
@@ -44,7 +44,7 @@ def scores(shot, *, refine: bool):
 
 def looked_at(planes, cuboids=()):
     shot = shoot(CAMERA, planes, cuboids)
-    surface = measured_surface(shot.inputs.depth_m, CAMERA, shot.inputs.instances > 0)
+    surface = measure_surface(shot.inputs.depth_m, CAMERA, shot.inputs.instances > 0)
     found = proposals(surface)
     layout = best_layout(surface, found, CAMERA)
     assert layout is not None
@@ -62,7 +62,7 @@ def test_a_wall_ends_where_the_room_is_seen_past_it(noise: float) -> None:
 
 def test_the_wall_s_end_is_found_in_the_picture() -> None:
     surface, found, layout = looked_at(room())
-    (end,) = hidden_ends(layout, surface, found, CAMERA)
+    (end,) = find_hidden_ends(layout, surface, found, CAMERA)
     edge = CAMERA.project(np.array([[*EDGE_M, 0.3], [*EDGE_M, 2.2]]))
     assert np.abs(edge @ end.form[:2] + end.form[2]).max() / np.linalg.norm(end.form[:2]) < 3.0
     (ended,) = end.ending
@@ -72,19 +72,19 @@ def test_the_wall_s_end_is_found_in_the_picture() -> None:
 def test_the_layout_gets_nearer_to_the_depth_and_no_further_round_is_needed() -> None:
     surface, found, layout = looked_at(room())
     pixels = CAMERA.project(surface.points)
-    refined = refined_layout(layout, surface, found, CAMERA)
+    refined = refine_layout(layout, surface, found, CAMERA)
     assert depth_error_m(refined, surface, pixels) < 0.2 * depth_error_m(layout, surface, pixels)
-    assert hidden_ends(refined, surface, found, CAMERA) == ()
+    assert find_hidden_ends(refined, surface, found, CAMERA) == ()
 
 
 def test_a_room_all_of_whose_walls_are_seen_stays_as_it_is() -> None:
     surface, found, layout = looked_at(box_room(-2.0, 2.0, 4.0, 2.5))
-    assert hidden_ends(layout, surface, found, CAMERA) == ()
-    assert refined_layout(layout, surface, found, CAMERA) is layout
+    assert find_hidden_ends(layout, surface, found, CAMERA) == ()
+    assert refine_layout(layout, surface, found, CAMERA) is layout
 
 
 def test_what_no_line_explains_changes_nothing() -> None:
     surface, found, layout = looked_at(box_room(-2.0, 2.0, 4.0, 2.5))
     rng = np.random.default_rng(0)
     torn = replace(surface, depth_m=surface.depth_m + 0.5 * (rng.random(len(surface.depth_m)) > 0.9))
-    assert refined_layout(layout, torn, found, CAMERA).chosen == layout.chosen
+    assert refine_layout(layout, torn, found, CAMERA).chosen == layout.chosen

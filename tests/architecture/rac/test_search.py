@@ -6,8 +6,8 @@ import numpy as np
 
 from diorama_core.architecture.rac.arrangement import arrangement, inverse_depths
 from diorama_core.architecture.rac.proposals import proposals
-from diorama_core.architecture.rac.search import best_layout, borders_of, cell_costs, labelled
-from diorama_core.architecture.walls.surface import measured_surface
+from diorama_core.architecture.rac.search import best_layout, borders_of, cell_costs, label_cells
+from diorama_core.architecture.walls.surface import measure_surface
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 CAMERA = look(15, 8, fov_deg=80)
@@ -16,7 +16,7 @@ ROOM = box_room(-2.0, 2.0, 4.0, 2.5)
 
 def looked_at(cuboids=()):
     shot = shoot(CAMERA, ROOM, cuboids)
-    surface = measured_surface(shot.inputs.depth_m, CAMERA, shot.inputs.instances > 0)
+    surface = measure_surface(shot.inputs.depth_m, CAMERA, shot.inputs.instances > 0)
     return surface, proposals(surface)
 
 
@@ -67,7 +67,7 @@ def true_costs():
 
 def test_a_room_that_is_seen_is_found():
     costs, truth = true_costs()
-    assert labelled(costs, borders_of(CELLS)) == truth
+    assert label_cells(costs, borders_of(CELLS)) == truth
 
 
 def test_planes_that_do_not_meet_there_may_not_be_neighbours():
@@ -76,11 +76,11 @@ def test_planes_that_do_not_meet_there_may_not_be_neighbours():
     wrong = costs.copy()
     wrong[k] = 0.1
     wrong[k, (truth[k] + 1) % len(PLANES)] = 0.0  # a little cheaper, and impossible among these neighbours
-    assert labelled(wrong, borders_of(CELLS)) == truth
+    assert label_cells(wrong, borders_of(CELLS)) == truth
 
 
 def test_no_layout_where_a_cell_can_show_nothing():
     costs, _ = true_costs()
     costs[0] = np.inf
-    assert labelled(costs, borders_of(CELLS)) is None
-    assert labelled(np.zeros((0, 0)), ()) is None
+    assert label_cells(costs, borders_of(CELLS)) is None
+    assert label_cells(np.zeros((0, 0)), ()) is None

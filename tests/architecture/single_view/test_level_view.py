@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.architecture.single_view.level_view import LevelView, level_view, projected, response
+from diorama_core.architecture.single_view.level_view import LevelView, level_view, project_directions, response
 from diorama_core.architecture.single_view.room_cues import EDGE_THRESHOLD, gather_room_cues
 from tests.architecture.single_view.plain_cues import CAMERA, cues
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
@@ -29,7 +29,7 @@ def view() -> LevelView:
 def test_directions_project_as_points_far_along_them(x, y, z) -> None:
     direction = np.array([[x, y, z]])
     ahead = CAMERA.to_camera(CAMERA.position + direction)[0, 2]
-    pixels, inside = projected(CAMERA, direction)
+    pixels, inside = project_directions(CAMERA, direction)
     if ahead <= 1e-3:
         assert not inside[0]
         return
@@ -72,7 +72,7 @@ def test_pixels_of_objects_have_no_colour_of_floor_or_wall() -> None:
     v = view()
     table = next(o for o in SHOT.objects if o.id == "table")
     columns, rows = np.meshgrid(v.middles_rad, 0.5 * (v.slopes[1:] + v.slopes[:-1]), indexing="ij")
-    pixels, inside = projected(SHOT.camera, np.stack([np.sin(columns), np.cos(columns), rows], axis=-1))
+    pixels, inside = project_directions(SHOT.camera, np.stack([np.sin(columns), np.cos(columns), rows], axis=-1))
     x, y = np.moveaxis(np.where(inside[..., None], pixels, 0).astype(int), -1, 0)
     on_table = inside & table.mask[y, x]
     assert on_table.sum() > 100

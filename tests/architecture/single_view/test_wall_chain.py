@@ -18,7 +18,7 @@ from diorama_core.architecture.single_view.wall_chain import (
     best_chain,
     leaves,
     nearby_walls,
-    refined,
+    refine_chain,
 )
 from tests.architecture.single_view.plain_cues import cues, drawn_edges
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
@@ -199,7 +199,7 @@ def test_walls_around_others_are_nearer_and_farther_by_a_share() -> None:
 def test_refinement_moves_rough_walls_to_the_true_ones() -> None:
     scorer = seen()
     rough = best_chain(scorer, walls(((1.0, 0.0), -2.1), ((0.0, -1.0), -4.2)), 2.6)
-    fine = refined(scorer, rough, np.array([2.4, 2.6, 2.8]))
+    fine = refine_chain(scorer, rough, np.array([2.4, 2.6, 2.8]))
     assert fine.cost <= best_chain(scorer, rough.walls, best_ceiling(scorer, rough, np.array([2.4, 2.6, 2.8]))).cost
     found = {int(d): o for d, o in zip(fine.walls.directions, fine.walls.offsets, strict=True)}
     assert found[1] == pytest.approx(-4.0, abs=0.08)

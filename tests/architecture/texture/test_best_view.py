@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from diorama_core.architecture.texture.best_view import best_view_textures, exposure_gains
-from diorama_core.architecture.texture.colours import coloured
+from diorama_core.architecture.texture.colours import colour_planes
 from diorama_core.architecture.texture.plane_textures import PlaneView, RoomPicture, plane_textures
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.types import Architecture, Camera
@@ -42,7 +42,7 @@ def shots():
 @pytest.fixture(scope="module")
 def room(shots):
     first = shots[0]
-    return Architecture(coloured(first.planes, first.inputs.photo.rgb, FIRST, first.objects))
+    return Architecture(colour_planes(first.planes, first.inputs.photo.rgb, FIRST, first.objects))
 
 
 def test_one_photo_gives_what_it_gives_alone(shots, room):

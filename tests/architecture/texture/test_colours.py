@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.texture.colours import coloured, visible_planes
+from diorama_core.architecture.texture.colours import colour_planes, visible_planes
 from diorama_core.artefacts import DetectedObject
 from tests.synthetic_rooms import box_room, look
 
@@ -27,14 +27,14 @@ def _door(mask_confidence: float) -> tuple[np.ndarray, DetectedObject]:
 @pytest.mark.parametrize(("sure", "expected"), [(0.5, GREY), (1.0, GREEN)])
 def test_walls_are_coloured_by_what_is_in_no_doubtful_box(sure: float, expected: tuple[int, int, int]) -> None:
     rgb, door = _door(sure)
-    back = next(p for p in coloured(ROOM, rgb, CAMERA, (door,)) if p.role == "wall" and p.normal[1] < -0.9)
+    back = next(p for p in colour_planes(ROOM, rgb, CAMERA, (door,)) if p.role == "wall" and p.normal[1] < -0.9)
     np.testing.assert_allclose(back.colour, np.array(expected) / 255, atol=0.03)
 
 
 def test_a_wall_that_is_only_seen_in_boxes_has_the_colour_seen_there() -> None:
     rgb, door = _door(0.5)
     everywhere = replace(door, box=(0, 0, 320, 240))
-    back = next(p for p in coloured(ROOM, rgb, CAMERA, (everywhere,)) if p.role == "wall" and p.normal[1] < -0.9)
+    back = next(p for p in colour_planes(ROOM, rgb, CAMERA, (everywhere,)) if p.role == "wall" and p.normal[1] < -0.9)
     np.testing.assert_allclose(back.colour, np.array(GREEN) / 255, atol=0.03)
 
 
@@ -50,5 +50,5 @@ def test_a_wall_behind_windows_and_shelves_has_the_colour_of_the_wall_that_is_se
     mask = shown.copy()
     mask[int(covered * 240) :] = False
     shelf = DetectedObject("shelf", "bookshelf", "bookshelf", (0, 0, 90, 240), mask, 1, 1.0)
-    walls = coloured(ROOM, rgb, CAMERA, (replace(shelf, mask_confidence=1.0),))
+    walls = colour_planes(ROOM, rgb, CAMERA, (replace(shelf, mask_confidence=1.0),))
     np.testing.assert_allclose(walls[left].colour, np.array(expected) / 255, atol=0.03)

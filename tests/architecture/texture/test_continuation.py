@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.ndimage import gaussian_filter
 
-from diorama_core.architecture.texture.continuation import completed, gaussian_texture, has_lines, is_gaussian
+from diorama_core.architecture.texture.continuation import complete_texture, gaussian_texture, has_lines, is_gaussian
 
 SHAPE = (150, 220)
 TINT = np.array([1.0, 0.8, 0.5])
@@ -18,7 +18,7 @@ def test_hidden_parts_are_filled_without_steps():
     seen = np.ones((60, 80), dtype=bool)
     seen[20:40, 30:50] = False
     colours = np.full((60, 80, 3), 120.0, np.float32)
-    filled = completed(colours, seen, (120 / 255,) * 3, 0.02, seen)
+    filled = complete_texture(colours, seen, (120 / 255,) * 3, 0.02, seen)
     assert np.abs(filled.astype(int) - 120).max() <= 2
 
 
@@ -26,7 +26,7 @@ def test_what_nobody_saw_is_the_plain_colour():
     seen = np.zeros((50, 400), dtype=bool)
     seen[:, :30] = True
     colours = np.full((50, 400, 3), 200.0, np.float32)
-    filled = completed(colours, seen, (0.2, 0.2, 0.2), 0.05, seen)
+    filled = complete_texture(colours, seen, (0.2, 0.2, 0.2), 0.05, seen)
     assert np.abs(filled[:, -1].astype(int) - 51).max() <= 2
     assert np.abs(filled[:, 5].astype(int) - 200).max() <= 4
 
@@ -41,7 +41,7 @@ def boards(height=300, width=400, period=14):
 def test_boards_continue_where_nobody_saw_the_floor():
     colours, seen = boards(), np.zeros((300, 400), dtype=bool)
     seen[100:220, 100:260] = True
-    filled = completed(colours, seen, (0.6, 0.6, 0.6), 0.01, seen, ground=True).astype(float)
+    filled = complete_texture(colours, seen, (0.6, 0.6, 0.6), 0.01, seen, ground=True).astype(float)
     unseen = filled[:, 300:384, 0] - filled[:, 300:384, 0].mean(axis=1, keepdims=True)
     # Along most rows the variation lives at the boards' period: six of them in 84 texels.
     spectrum = np.abs(np.fft.rfft(unseen, axis=1))
@@ -55,7 +55,7 @@ def test_a_poster_stays_where_it_is_and_is_not_copied():
     seen = np.zeros((300, 400), dtype=bool)
     seen[60:240, 60:280] = True
     own = seen & (colours[..., 1] > 100)
-    filled = completed(colours, seen, (150 / 255,) * 3, 0.01, own).astype(int)
+    filled = complete_texture(colours, seen, (150 / 255,) * 3, 0.01, own).astype(int)
     assert np.abs(filled[140, 160] - (230, 20, 40)).max() < 6
     away = filled.copy()
     away[100:190, 120:200] = 150
@@ -67,7 +67,7 @@ def test_light_and_shade_go_on_beside_what_is_seen():
     colours = np.broadcast_to(shade[None, :, None], (300, 400, 3)).copy()
     seen = np.zeros((300, 400), dtype=bool)
     seen[100:200] = True
-    filled = completed(colours, seen, (0.5, 0.5, 0.5), 0.01, seen).astype(float)
+    filled = complete_texture(colours, seen, (0.5, 0.5, 0.5), 0.01, seen).astype(float)
     assert np.abs(filled[90, 20:380, 0] - shade[20:380]).max() < 12
 
 
@@ -78,7 +78,7 @@ def test_copies_of_a_small_piece_do_not_show_as_a_weave():
     seen[130:170, 130:170] = True
     # A broad dark stripe across the little that is seen, as a thing's shadow leaves it.
     colours -= 18.0 * np.exp(-(((np.arange(300) - 150) / 6.0) ** 2))[:, None, None].astype(np.float32)
-    filled = completed(colours, seen, (150 / 255,) * 3, 0.01, seen, ground=True).astype(float)
+    filled = complete_texture(colours, seen, (150 / 255,) * 3, 0.01, seen, ground=True).astype(float)
     rows, places = filled[:90, 230:, 0].mean(axis=1), np.arange(90)
     assert np.std(rows - np.polyval(np.polyfit(places, rows, 3), places)) < 18.0 / 5.0
 

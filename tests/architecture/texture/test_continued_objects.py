@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from diorama_core.architecture.texture.continued_objects import (
-    continued_objects,
     cut_patches,
+    find_continued_objects,
     object_colours,
 )
 from diorama_core.artefacts import DetectedObject
@@ -36,7 +36,7 @@ def continued(picture: np.ndarray, objects: tuple[DetectedObject, ...] | None = 
     rows, columns = np.nonzero(foreign)
     known = object_colours(picture, (item,) if objects is None else objects)
     where = np.stack([columns, rows], axis=1) + 0.5
-    return continued_objects(picture.astype(np.float32), own, foreign, where, known, PIXEL_M, SIZE)
+    return find_continued_objects(picture.astype(np.float32), own, foreign, where, known, PIXEL_M, SIZE)
 
 
 UPPER_HALF = (slice(50, 120), slice(90, 130))

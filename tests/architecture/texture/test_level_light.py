@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.architecture.texture.level_light import levelled
+from diorama_core.architecture.texture.level_light import level_light
 
 PIXEL_M = 0.01
 OWN = np.ones((200, 300), dtype=bool)
@@ -31,14 +31,14 @@ def blob(width_m: float, levels: float) -> np.ndarray:
 
 @pytest.mark.parametrize("width_m", [0.15, 0.4])
 def test_a_blurred_mirror_image_goes(width_m: float) -> None:
-    mirrored = levelled(floor(joints=False) + blob(width_m, 40.0), OWN, PIXEL_M)
+    mirrored = level_light(floor(joints=False) + blob(width_m, 40.0), OWN, PIXEL_M)
     spot = mirrored[90:110, 140:160].mean() - np.median(mirrored)
     assert abs(spot) < 14.0  # of 40; what is left of the broader one is the room's brighter side
 
 
 def test_boards_keep_their_joints_and_tones() -> None:
     boards = floor(joints=True)
-    kept = levelled(boards, OWN, PIXEL_M)
+    kept = level_light(boards, OWN, PIXEL_M)
     across, before = kept[:, 40:260].mean(axis=(0, 2)), boards[:, 40:260].mean(axis=(0, 2))
     assert np.corrcoef(across, before)[0, 1] > 0.95
     assert across.std() > 0.7 * before.std()
@@ -49,9 +49,11 @@ def test_what_is_not_the_floors_own_changes_nothing() -> None:
     own[:, 200:] = False
     other = picture.copy()
     other[:, 200:] = 0.0
-    np.testing.assert_allclose(levelled(other, own, PIXEL_M)[own], levelled(picture, own, PIXEL_M)[own], atol=1e-3)
+    np.testing.assert_allclose(
+        level_light(other, own, PIXEL_M)[own], level_light(picture, own, PIXEL_M)[own], atol=1e-3
+    )
 
 
 def test_nothing_of_the_floor_leaves_the_picture_alone() -> None:
     picture = floor(joints=False)
-    np.testing.assert_array_equal(levelled(picture, np.zeros_like(OWN), PIXEL_M), picture)
+    np.testing.assert_array_equal(level_light(picture, np.zeros_like(OWN), PIXEL_M), picture)

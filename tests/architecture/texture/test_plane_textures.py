@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.texture.colours import coloured
+from diorama_core.architecture.texture.colours import colour_planes
 from diorama_core.architecture.texture.plane_textures import (
     MAX_SIDE_PX,
     PhotoView,
@@ -31,7 +31,7 @@ def shot():
 
 @pytest.fixture(scope="module")
 def textures(shot):
-    planes = coloured(shot.planes, shot.inputs.photo.rgb, CAMERA, shot.objects)
+    planes = colour_planes(shot.planes, shot.inputs.photo.rgb, CAMERA, shot.objects)
     return plane_textures(shot.inputs, shot.objects, CAMERA, Architecture(planes))
 
 
@@ -84,7 +84,7 @@ def test_gaps_between_boards_are_the_floors_and_cut_it_in_no_pieces(shot):
 
 
 def test_textures_are_deterministic(shot, textures):
-    planes = coloured(shot.planes, shot.inputs.photo.rgb, CAMERA, shot.objects)
+    planes = colour_planes(shot.planes, shot.inputs.photo.rgb, CAMERA, shot.objects)
     again = plane_textures(shot.inputs, shot.objects, CAMERA, Architecture(planes))
     assert all(np.array_equal(again[name], textures[name]) for name in textures)
 
@@ -101,7 +101,7 @@ class _Painter:
 
 @pytest.mark.parametrize(("colour", "accepted"), [((165, 122, 90), True), ((20, 40, 230), False)])
 def test_what_a_filler_painted_is_taken_for_floor_where_it_looks_like_it(shot, colour, accepted):
-    planes = coloured(shot.planes, shot.inputs.photo.rgb, CAMERA, shot.objects)
+    planes = colour_planes(shot.planes, shot.inputs.photo.rgb, CAMERA, shot.objects)
     floor = next(p for p in planes if p.id == "floor")
     view = PhotoView(RoomPicture(shot.inputs.photo.rgb, shot.objects, CAMERA, filler=_Painter(colour)))
     found = view.plane_view(floor, planes, *texel_points(floor))

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.architecture.texture.refit import refitted, refitted_textures
+from diorama_core.architecture.texture.refit import refit_picture, refit_textures
 from diorama_core.geometry.planes import plane_rectangle
 from diorama_core.scene.edits import move_plane, rescale, set_ceiling_height
 from diorama_core.scene.room_edits import set_surface_finish
@@ -33,7 +33,7 @@ TEXTURES = {"back": PICTURE, "right": PICTURE}
 
 def test_a_side_wall_grows_and_its_neighbour_keeps_the_scale():
     before = room()
-    after, made = refitted_textures(before, move_plane(before, "right", 1.0), TEXTURES)
+    after, made = refit_textures(before, move_plane(before, "right", 1.0), TEXTURES)
     back = after.plane("back")
     assert set(made) == {back.texture}
     picture = made[back.texture]
@@ -45,7 +45,7 @@ def test_a_side_wall_grows_and_its_neighbour_keeps_the_scale():
 
 def test_a_plane_that_only_moves_along_its_normal_keeps_its_picture():
     before = room()
-    after, _ = refitted_textures(before, move_plane(before, "right", 1.0), TEXTURES)
+    after, _ = refit_textures(before, move_plane(before, "right", 1.0), TEXTURES)
     assert after.plane("right").texture == "right"
 
 
@@ -53,7 +53,7 @@ def test_a_lower_ceiling_cuts_the_picture_from_above():
     before = room()
     marked = PICTURE.copy()
     marked[:10] = (255, 0, 0)
-    after, made = refitted_textures(before, set_ceiling_height(before, 2.0), {"back": marked})
+    after, made = refit_textures(before, set_ceiling_height(before, 2.0), {"back": marked})
     picture = made[after.plane("back").texture]
     assert picture.shape[:2] == (100, 200)
     assert not ((picture[..., 0] > 240) & (picture[..., 1] < 30)).any()
@@ -61,10 +61,10 @@ def test_a_lower_ceiling_cuts_the_picture_from_above():
 
 def test_there_and_back_has_the_old_size_and_names_are_repeatable():
     before = room()
-    there, made = refitted_textures(before, move_plane(before, "right", 1.0), TEXTURES)
-    again, _ = refitted_textures(before, move_plane(before, "right", 1.0), TEXTURES)
+    there, made = refit_textures(before, move_plane(before, "right", 1.0), TEXTURES)
+    again, _ = refit_textures(before, move_plane(before, "right", 1.0), TEXTURES)
     assert there == again
-    back, more = refitted_textures(there, move_plane(there, "right", -1.0), {**TEXTURES, **made})
+    back, more = refit_textures(there, move_plane(there, "right", -1.0), {**TEXTURES, **made})
     np.testing.assert_allclose(more[back.plane("back").texture].astype(int), PICTURE, atol=25)
 
 
@@ -76,12 +76,12 @@ def test_other_edits_make_no_pictures(edit):
         "plain": lambda s: set_surface_finish(s, ["back"], PAINT),
         "nothing": lambda s: s,
     }[edit](before)
-    assert refitted_textures(before, after, TEXTURES) == (after, {})
+    assert refit_textures(before, after, TEXTURES) == (after, {})
 
 
 def test_a_plane_without_overlap_takes_the_nearest_colours():
     a = Plane("wall", "wall", np.array([[0.0, 2, 0], [2, 2, 0], [2, 2, 2], [0, 2, 2]]))
     b = replace(a, polygon=a.polygon + np.array([5.0, 0.0, 0.0]))
-    picture = refitted(np.full((50, 50, 3), 77, np.uint8), a, b)
+    picture = refit_picture(np.full((50, 50, 3), 77, np.uint8), a, b)
     assert (picture == 77).all()
     assert plane_rectangle(b)[2] == pytest.approx([2.0, 2.0])

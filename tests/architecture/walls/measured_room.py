@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from diorama_core.architecture.texture.colours import object_pixels
-from diorama_core.architecture.walls.surface import MeasuredSurface, measured_surface
+from diorama_core.architecture.walls.surface import MeasuredSurface, measure_surface
 from tests.synthetic_rooms import Shot, box_room, cuboid, look, shoot
 
 TOP_M = 2.6
@@ -21,4 +21,4 @@ def plain_shot(noise: float = 0.0) -> Shot:
 
 def surface_of(shot: Shot) -> MeasuredSurface:
     depth = shot.inputs.depth_m
-    return measured_surface(depth, shot.camera, object_pixels(depth.shape, shot.objects))
+    return measure_surface(depth, shot.camera, object_pixels(depth.shape, shot.objects))

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.architecture.walls.surface import averaged, calm_planes, measured_surface
+from diorama_core.architecture.walls.surface import calm_planes, downsample_depth, measure_surface
 from diorama_core.scene.types import Intrinsics
 from tests.architecture.walls.measured_room import plain_shot, surface_of
 from tests.synthetic_rooms import look
@@ -62,18 +62,18 @@ def test_blocks_average_one_surface_and_never_between_two() -> None:
     depth[:3, 3:6] = np.array([[1.0, 3.0, 1.0], [1.0, 3.0, 1.0], [1.0, 3.0, 1.0]])
     depth[3:, :3] = [[0, 2.0, 0], [2.05, 1.95, 2.0], [0, 2.0, 2.0]]
     depth[3:, 3:6] = 0.0
-    small, k = averaged(depth, Intrinsics(9, 6, 9.0, 9.0, 4.5, 3.0), 3)
+    small, k = downsample_depth(depth, Intrinsics(9, 6, 9.0, 9.0, 4.5, 3.0), 3)
     assert small.shape == (2, 3)
     assert (k.width, k.height, k.fx, k.cx) == (3, 2, 3.0, 1.5)
     assert small[0, 1] == 3.0, "the middle sample"
     assert small[1, 0] == pytest.approx(6 / (4 / 2.0 + 1 / 2.05 + 1 / 1.95))
     assert small[1, 1] == 0.0
-    same, unchanged = averaged(depth, Intrinsics(9, 6, 9.0, 9.0, 4.5, 3.0), 9)
+    same, unchanged = downsample_depth(depth, Intrinsics(9, 6, 9.0, 9.0, 4.5, 3.0), 9)
     np.testing.assert_array_equal(same, depth)
     assert unchanged.width == 9
 
 
 def test_nothing_measured_gives_nothing() -> None:
-    empty = measured_surface(np.zeros((120, 160), np.float32), look(size=(160, 120)), np.zeros((120, 160), dtype=bool))
+    empty = measure_surface(np.zeros((120, 160), np.float32), look(size=(160, 120)), np.zeros((120, 160), dtype=bool))
     assert len(empty.points) == 0
     assert (empty.grid_rows, empty.grid_columns, empty.noise) == (120, 160, 0.0)
