@@ -226,7 +226,7 @@ def _round_a_hole(spots: _Spots, region: Int[np.ndarray, "k"]) -> list[Int[np.nd
     inside = shapely.contains_xy(outline, *np.indices(left.shape))
     if 2.0 * float(distance_transform_edt(np.pad(inside & ~left, 1)).max()) * spots.cell_m < HOLE_M:
         return []
-    pieces = []
+    pieces: list[Int[np.ndarray, "_"]] = []
     while True:
         low, high = _largest_rectangle(left)
         if (high - low).min() * spots.cell_m < LEDGE_M:

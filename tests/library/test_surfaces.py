@@ -112,7 +112,7 @@ def test_a_worktop_with_a_lower_piece_between_is_as_high_as_its_higher_ends() ->
 
 
 def test_what_is_put_on_a_basin_stands_on_its_rim() -> None:
-    """A counter of 1.0 x 0.5 m with a basin: strips of 0.3 m beside it, what is in it and thinner strips are no place."""
+    """A counter of 1.0 x 0.5 m with a basin: strips of 0.3 m beside it; the basin is no place, nor its rim."""
     counter = block((0.5, 1.0, 0.2), (0, 0, 0.8))
     basin = counter.difference(block((0.42, 0.4, 0.2), (0, 0, 0.85)))
     strips = support_surfaces(basin, carries=True)
