@@ -35,7 +35,7 @@ from diorama_core.arrangement.supports import LEAST_ODDS, STANDING_TERMS, wall_r
 from diorama_core.artefacts import Inputs
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto
 from diorama_core.evaluation.benchmarks.cases import SEEDS, make_views, recipe
-from diorama_core.evaluation.benchmarks.photo_build import annotated_inputs
+from diorama_core.evaluation.benchmarks.photo_build import read_annotated_inputs
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.evaluation.benchmarks.system import WAYS
 from diorama_core.evaluation.metrics.scene import align_to_truth, match_all
@@ -96,7 +96,7 @@ def photo_questions(
 ) -> Iterator[Question]:
     """Questions about every annotated object whose supporter is annotated."""
     for task in plan([PhotoSource(annotated, photos)]).tasks:
-        scene, evidence = posed_scene(annotated_inputs(task).inputs, library, cache / f"{photos.name}-{task.name}")
+        scene, evidence = posed_scene(read_annotated_inputs(task).inputs, library, cache / f"{photos.name}-{task.name}")
         right = _annotated(task.annotation, scene)
         yield from _questions(task.name, photos.name, scene, library, REASONED, evidence, right, columns)
 

@@ -61,7 +61,7 @@ def lab_of(srgb: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
     return np.asarray(cv2.cvtColor(flat, cv2.COLOR_RGB2Lab).reshape(np.shape(srgb)), dtype=np.float64)
 
 
-def perceived_difference(
+def perceptual_difference(
     srgb_1: Float[np.ndarray, "*n 3"], srgb_2: Float[np.ndarray, "*n 3"]
 ) -> Float[np.ndarray, "*n"]:
     """CIEDE2000 of sRGB colours from 0 to 1, with lightness at half weight."""
