@@ -27,8 +27,8 @@ from diorama_core.arrangement.support_hypotheses import (
     ObservationNoise,
     SupportEvidence,
     SupportHypothesis,
-    seen_below,
     support_hypotheses,
+    visible_shares_below,
 )
 from diorama_core.arrangement.support_terms import PATH, TERMS, place_name
 from diorama_core.arrangement.supports import LEAST_ODDS, STANDING_TERMS, wall_relation
@@ -88,7 +88,7 @@ def posed_scene(inputs: Inputs, library: ShapeLibrary, cache: Path) -> tuple[Sce
     objects, geometry = found["furniture"]
     scene = assemble(objects, geometry, found["architecture"], found["posed"], library, {})
     believed = {edge.child: edge for edge in scene.supports}
-    return scene, SupportEvidence(believed, seen_below({o.id: o.mask for o in objects}))
+    return scene, SupportEvidence(believed, visible_shares_below({o.id: o.mask for o in objects}))
 
 
 def photo_questions(
