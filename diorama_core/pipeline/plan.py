@@ -369,7 +369,7 @@ def evaluate(
             if step.gives == LOOKS_AHEAD:
                 ahead.close()
             known[step.gives] = step.evaluate(stages, known, runner, part)
-            part.found(finding(step.gives, known[step.gives]), drawing(step.gives, known))
+            part.report_finding(finding(step.gives, known[step.gives]), drawing(step.gives, known))
         known |= {name: future.result() for name, future in begun.items()}
     return known
 
