@@ -37,7 +37,7 @@ class CancelToken:
         self._event.set()
 
     @property
-    def cancelled(self) -> bool:
+    def is_cancelled(self) -> bool:
         """Whether the job was asked to stop."""
         return self._event.is_set()
 
@@ -65,14 +65,14 @@ class Progress:
         self.check()
         self.on_event(ProgressEvent(fraction=self._overall_fraction(min(max(fraction, 0.0), 1.0)), message=message))
 
-    def found(self, words: str, drawn: Segments = ()) -> None:
+    def report_finding(self, words: str, drawn: Segments = ()) -> None:
         """Report what this part of the job, which is done, found: words and lines; nothing without words."""
         if words:
             self.on_event(ProgressEvent(fraction=self.end, message=words, found=words, drawn=drawn))
 
     def check(self) -> None:
         """Raise `Cancelled` when the job was asked to stop."""
-        if self.token.cancelled:
+        if self.token.is_cancelled:
             raise Cancelled("stopped on request; nothing was changed")
 
     def part(self, start: float, end: float) -> Progress:

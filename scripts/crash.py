@@ -49,7 +49,7 @@ from diorama_core.layout.recipes import recipe
 from diorama_core.library.ingest.adding import add_models
 from diorama_core.library.ingest.finding import model_files, sources
 from diorama_core.library.ingest.given import Given
-from diorama_core.library.ingest.known_shapes import known_shapes
+from diorama_core.library.ingest.known_shapes import load_known_shapes
 from diorama_core.library.store.stored import StoredLibrary
 from diorama_core.progress import Progress
 from diorama_core.project.lock import ProjectLock
@@ -152,7 +152,7 @@ class _Here:
 
 def library(going: Going, chance: np.random.Generator) -> Figures:
     """See the module."""
-    known_shapes()  # learnt once a machine, before the first library
+    load_known_shapes()  # learnt once a machine, before the first library
     with tempfile.TemporaryDirectory() as name:
         models, root = Path(name) / "models", Path(name)
         models.mkdir()

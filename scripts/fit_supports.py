@@ -27,15 +27,15 @@ from diorama_core.arrangement.support_hypotheses import (
     ObservationNoise,
     SupportEvidence,
     SupportHypothesis,
-    seen_below,
     support_hypotheses,
+    visible_shares_below,
 )
 from diorama_core.arrangement.support_terms import PATH, TERMS, place_name
 from diorama_core.arrangement.supports import LEAST_ODDS, STANDING_TERMS, wall_relation
 from diorama_core.artefacts import Inputs
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto
 from diorama_core.evaluation.benchmarks.cases import SEEDS, make_views, recipe
-from diorama_core.evaluation.benchmarks.photo_build import annotated_inputs
+from diorama_core.evaluation.benchmarks.photo_build import read_annotated_inputs
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.evaluation.benchmarks.system import WAYS
 from diorama_core.evaluation.metrics.scene import align_to_truth, match_all
@@ -88,7 +88,7 @@ def posed_scene(inputs: Inputs, library: ShapeLibrary, cache: Path) -> tuple[Sce
     objects, geometry = found["furniture"]
     scene = assemble(objects, geometry, found["architecture"], found["posed"], library, {})
     believed = {edge.child: edge for edge in scene.supports}
-    return scene, SupportEvidence(believed, seen_below({o.id: o.mask for o in objects}))
+    return scene, SupportEvidence(believed, visible_shares_below({o.id: o.mask for o in objects}))
 
 
 def photo_questions(
@@ -96,7 +96,7 @@ def photo_questions(
 ) -> Iterator[Question]:
     """Questions about every annotated object whose supporter is annotated."""
     for task in plan([PhotoSource(annotated, photos)]).tasks:
-        scene, evidence = posed_scene(annotated_inputs(task).inputs, library, cache / f"{photos.name}-{task.name}")
+        scene, evidence = posed_scene(read_annotated_inputs(task).inputs, library, cache / f"{photos.name}-{task.name}")
         right = _annotated(task.annotation, scene)
         yield from _questions(task.name, photos.name, scene, library, REASONED, evidence, right, columns)
 

@@ -17,7 +17,7 @@ import trimesh
 
 from diorama_core.geometry.convex import convex_parts
 from diorama_core.io.atomic import write_atomically
-from diorama_core.layout.problem.parts import BUILT_IN_PARTS, NAMES, PackedParts, Parts, packed, solids_key
+from diorama_core.layout.problem.parts import BUILT_IN_PARTS, NAMES, PackedParts, Parts, pack, solids_key
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture.articulation import articulation
 from diorama_core.library.furniture.model import joined
@@ -63,7 +63,7 @@ def main() -> int:
         print(f"\r{done} of {len(shape_ids)} shapes", end="", file=sys.stderr, flush=True)
     used = sorted({key for shape_id in shape_ids for key in wanted(shape_id)})
     content = BytesIO()
-    arrays = packed({key: made[key] for key in used})
+    arrays = pack({key: made[key] for key in used})
     np.savez_compressed(content, **arrays)  # type: ignore[arg-type]  # numpy's stub confuses them with its own option
     BUILT_IN_PARTS.parent.mkdir(parents=True, exist_ok=True)
     write_atomically(BUILT_IN_PARTS, content.getvalue())

@@ -35,8 +35,8 @@ def test_a_part_reports_within_its_bounds(fraction: float) -> None:
 def test_what_was_found_is_told_at_the_end_and_only_with_words() -> None:
     events: list[ProgressEvent] = []
     part = Progress(on_event=events.append).part(0.0, 0.5)
-    part.found("")
-    part.found("three chairs")
+    part.report_finding("")
+    part.report_finding("three chairs")
     assert events == [ProgressEvent(fraction=0.5, message="three chairs", found="three chairs")]
 
 

@@ -16,7 +16,7 @@ import pytest
 from diorama_core.artefacts import Inputs
 from diorama_core.evaluation.adapters.photo_annotations import read_annotations
 from diorama_core.evaluation.benchmarks.cases import Case, studio_of
-from diorama_core.evaluation.benchmarks.photo_build import PhotoTask, annotated_inputs
+from diorama_core.evaluation.benchmarks.photo_build import PhotoTask, read_annotated_inputs
 from diorama_core.evaluation.metrics.scene import SceneScores, scene_scores
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.pipeline.run import Built, build_scene
@@ -71,7 +71,7 @@ def test_kinds_of_photos_are_right(photos: list[PhotoEntry]) -> None:
     annotations = read_annotations(Path(__file__).with_name("photo_annotations.json"))
     right = []
     for name in PHOTOS:
-        case = annotated_inputs(PhotoTask(name, paths[name], annotations[name]))
+        case = read_annotated_inputs(PhotoTask(name, paths[name], annotations[name]))
         items = {item.mask_id: item for item in built(case.inputs).scene.objects}
         for number, stated in enumerate(case.annotation.objects, 1):
             if stated.nameable:

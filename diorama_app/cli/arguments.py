@@ -151,7 +151,7 @@ def progress_bar() -> Iterator[Progress]:
     previous = signal.getsignal(signal.SIGINT)
 
     def stop(number: int, frame: object) -> None:
-        if token.cancelled:
+        if token.is_cancelled:
             raise KeyboardInterrupt
         token.cancel()
 

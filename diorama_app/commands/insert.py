@@ -56,7 +56,7 @@ def _remember(client: Client, shape_id: str) -> None:
 def insert_shape(client: Client, shape_id: str) -> None:
     """Insert a shape on the selected object where such things stand on it, or else on the floor in view."""
     session = client.session
-    shape, scene, parent = session.library.shape(shape_id), session.scene, client.selected
+    shape, scene, parent = session.library.shape(shape_id), session.scene, client.last_selected
     mount = resolve(shape.category).category.mount
     if mount in ("wall", "ceiling") and _hang_in_view(client, shape_id):
         return

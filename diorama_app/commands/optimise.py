@@ -21,7 +21,7 @@ from diorama_core.errors import EditRefused
 from diorama_core.geometry.rotations import rotation_from_vector, rotation_vector
 from diorama_core.layout.report import layout_figures
 from diorama_core.layout.settings import AS_IT_IS, Weights
-from diorama_core.layout.what_got_worse import Problems, new_problems, resized_too_much, with_believed_sizes
+from diorama_core.layout.what_got_worse import Problems, find_excessive_resizes, new_problems, with_believed_sizes
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
@@ -133,7 +133,7 @@ def _worse(session: EditorSession, start: Scene, final: Scene) -> Problems:
     """What is wrong with objects now and was not before, by id."""
     collisions = Collisions(session.library)
     found = new_problems(problems(start, session.library, collisions), problems(final, session.library, collisions))
-    resized = resized_too_much(start, final)
+    resized = find_excessive_resizes(start, final)
     return {i: (*found.get(i, ()), *resized.get(i, ())) for i in (*found, *(i for i in resized if i not in found))}
 
 

@@ -221,7 +221,7 @@ class Gestures:
 
     def refresh(self) -> None:
         """Attach the gizmo to the selected object; remove it when nothing movable is selected."""
-        item = self._client.selected
+        item = self._client.last_selected
         if (
             item is None
             or item.locked
@@ -273,7 +273,7 @@ class Gestures:
             self._gizmo = self._gizmo_key = None
 
     def _turn(self, phase: str, wxyz: np.ndarray, position: np.ndarray) -> None:
-        item = self._client.selected
+        item = self._client.last_selected
         if self._drag is None:
             if item is None or phase != "start":
                 return

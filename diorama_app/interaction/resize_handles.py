@@ -116,7 +116,7 @@ class SizeHandles:
 
     def _stretch(self, handle: Handle, phase: str, grabbed: np.ndarray, hand: np.ndarray, inverted: bool) -> None:
         client, session = self._client, self._session
-        item = client.selected
+        item = client.last_selected
         if phase == "start":
             if item is not None and client.doing is None:
                 self._pull = Pull(item.id, handle, grabbed, session.scene, session.scene)

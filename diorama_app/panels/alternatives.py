@@ -54,7 +54,7 @@ class Alternatives:
 
     def refresh(self) -> None:
         """Draw the alternatives of the selected object."""
-        item = self._client.selected
+        item = self._client.last_selected
         show_if(item is not None, self._words)
         if item is None:
             self._options.show("")

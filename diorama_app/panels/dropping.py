@@ -8,7 +8,7 @@ from __future__ import annotations
 import viser
 
 from diorama_app.commands.import_model import import_model
-from diorama_app.panels.fields import Take, hidden_upload
+from diorama_app.panels.fields import Take, add_hidden_upload
 from diorama_app.panels.input_questions import ask_which
 from diorama_app.panels.photo import PhotoPanel
 from diorama_app.projects.dropped import Dropped, Reading
@@ -69,5 +69,5 @@ def listen_for_drops(gui: viser.GuiApi, client: Client, take: Take) -> None:
         client: the owner.
         take: takes name and content.
     """
-    uuid = hidden_upload(gui, client, _("Dropped files"), take)
+    uuid = add_hidden_upload(gui, client, _("Dropped files"), take)
     gui.add_html(f'<i id="dio-drop-to" data-upload="{text(uuid)}"></i>')

@@ -117,8 +117,8 @@ class UploadField:
         return not self._hidden.visible
 
 
-def hidden_upload(gui: viser.GuiApi, client: Client, label: str, take: Take, **about: Any) -> str:
-    """An upload button that the page does not show, for what is dropped or chosen elsewhere; gives its id.
+def add_hidden_upload(gui: viser.GuiApi, client: Client, label: str, take: Take, **about: Any) -> str:
+    """Add an upload button that the page does not show, for what is dropped or chosen elsewhere; gives its id.
 
     Args:
         gui: of the page.

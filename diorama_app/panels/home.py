@@ -74,7 +74,7 @@ class HomePanel:
         if self._joining not in others:
             return made
         other = Project.open(self._joining).load_scene()
-        selected = self._client.selected
+        selected = self._client.last_selected
         is_door = selected is not None and selected.category == DOOR
         hint = _("Click the door in the plan, then the same door in the room")
         join = button(text(_("Join here")), "join", disabled=not (self._door and is_door))

@@ -77,7 +77,7 @@ class LibraryPanel:
 
     def refresh(self) -> None:
         """Draw the filters and what was found."""
-        selected, preferences = self._client.selected, self._client.preferences
+        selected, preferences = self._client.last_selected, self._client.preferences
         where = _(WAYS if selected is None else WAYS_WITH_SUPPORT)
         if isinstance(self._client.doing, Placing):
             where = _("<b>Click in the view</b> where it should be; Esc cancels.")

@@ -71,7 +71,7 @@ class Networks:
 
     def _unknown(self, store: ModelStore) -> frozenset[str]:
         """Ids of missing networks whose licences were not accepted on this machine yet."""
-        return frozenset(n.id for n in self._missing(store)) - store.accepted_licences()
+        return frozenset(n.id for n in self._missing(store)) - store.read_accepted_licences()
 
     def _choose(self) -> None:
         show_value(self._accept, False)  # another set has other licences
@@ -116,7 +116,7 @@ def _offer_html(missing: tuple[Network, ...], store: ModelStore) -> str:
         f'<span class="dim">{text(n.licence)}</span></td></tr>'
         for n in missing
     )
-    known = all(n.id in store.accepted_licences() for n in missing)
+    known = all(n.id in store.read_accepted_licences() for n in missing)
     words = _("Their licences were accepted on this machine.") if known else _("Their licences are accepted once.")
     size = _("{size} to download.").format(size=_size(total))
     return f'<div class="card"><b>{text(size)}</b> {text(words)}<table>{rows}</table></div>'

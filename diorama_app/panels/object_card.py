@@ -48,7 +48,7 @@ class ObjectCard:
 
     def refresh(self) -> None:
         """Show the selected object, or what to do when there is none."""
-        item = self._client.selected
+        item = self._client.last_selected
         empty = "" if self._client.surface is not None else self._advice()
         self._html.show(empty if item is None else self._card(item))
 

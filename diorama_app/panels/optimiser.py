@@ -14,8 +14,8 @@ from diorama_app.session.client import Client
 from diorama_app.session.layout_run import LayoutRun
 from diorama_app.strings import N_, _, plural
 from diorama_app.web.html import Action, LiveHtml, button, library_text, text
-from diorama_core.layout.settings import RecipeName, Weights, weighted_costs
-from diorama_core.layout.what_got_worse import describe_worse, resized_in_words
+from diorama_core.layout.settings import RecipeName, Weights, cost_names
+from diorama_core.layout.what_got_worse import describe_worse, resizes_in_words
 from diorama_core.scene.types import Scene
 
 RECIPES: dict[str, RecipeName] = {
@@ -117,7 +117,7 @@ class Optimiser:
         recipe = self._client.preferences.recipe
         show_value(self._recipe, next(_(label) for label, name in RECIPES.items() if name == recipe))
         self._about.show(f'<p class="dim">{text(_(ABOUT[recipe]))} {text(_("Locked objects stay."))}</p>')
-        used = weighted_costs(recipe)
+        used = cost_names(recipe)
         for name, slider in self._weights.items():
             show_if(name in used, slider)
         enable(self._even, any(slider.value != 1.0 for slider in self._weights.values()))
@@ -136,7 +136,7 @@ class Optimiser:
         name = client.preferences.recipe
 
         def start() -> None:
-            weights = Weights(**{cost: self._weights[cost].value for cost in weighted_costs(name)})
+            weights = Weights(**{cost: self._weights[cost].value for cost in cost_names(name)})
             optimise(client.session, name, client.need_selection() if some else (), weights, by=client)
 
         client.post(start)
@@ -272,7 +272,7 @@ def _worse(run: LayoutRun, labels: Mapping[str, str]) -> str:
 
 def _report(run: LayoutRun, scene: Scene) -> str:
     """Which sizes changed, and what stayed because people placed it."""
-    lines = list(resized_in_words(run.start, scene))
+    lines = list(resizes_in_words(run.start, scene))
     if run.left:
         lines.append(plural(*STAYED, run.left))
     bar = button(_("Tidy up all"), "tidy all", title=_("Also move objects that people placed")) if run.left else ""

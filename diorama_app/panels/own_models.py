@@ -115,7 +115,7 @@ class OwnModel:
 
     def refresh(self) -> None:
         """Draw what was guessed about the selected object's model, and ways to correct it."""
-        item = self._client.selected
+        item = self._client.last_selected
         if item is None or not is_own_model(self._client.session, item.shape_id):
             self._html.show("")
             return

@@ -51,7 +51,7 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
         hint = _("Find where this photo was taken, match its objects with those of the scene and insert the others")
         pieces.append(button(_("Add to the scene"), "join", title=hint, disabled=busy))
     doubt = upside_down_note() if further is None and is_upside_down(inputs.boxes, inputs.photo.height) else ""
-    doubt += straightened_note() if further is None and _may_be_bent_back(client, inputs) else ""
+    doubt += straightening_note() if further is None and _may_be_bent_back(client, inputs) else ""
     return f'{doubt}<div class="bar">{"".join(pieces)}</div>'
 
 
@@ -61,7 +61,7 @@ def upside_down_note() -> str:
     return f'<div class="bar"><span class="lead">{text(_("The photo seems to be upside down."))}</span>{turn}</div>'
 
 
-def straightened_note() -> str:
+def straightening_note() -> str:
     """What is said of a photo that was straightened by its own lines, and the button that undoes it."""
     back = button(_("Undo straightening"), "bend", title=_("Use the photo as it is in its file"))
     message = _("The photo was straightened because its lens bends straight lines.")

@@ -30,7 +30,7 @@ class PhotoCorrection:
 
     def refresh(self) -> None:
         """Draw what can be corrected about the selected object."""
-        item, session = self._client.selected, self._client.session
+        item, session = self._client.last_selected, self._client.session
         if item is None or item.box_px is None or session.photo is None:
             self._html.show("")
             return

@@ -29,7 +29,7 @@ class Physics:
 
     def refresh(self) -> None:
         """Show the physics of the selected object where the person has unfolded them."""
-        item, unfolded = self._client.selected, self._client.preferences.physics
+        item, unfolded = self._client.last_selected, self._client.preferences.physics
         scene = self._client.session.scene
         wanted = (item, scene) if item is not None and unfolded else None
         if self._of is None or wanted is None or self._of[0] is not wanted[0] or self._of[1] is not wanted[1]:

@@ -11,7 +11,7 @@ import numpy as np
 import viser
 from jaxtyping import UInt8
 
-from diorama_app.panels.fields import hidden_upload
+from diorama_app.panels.fields import add_hidden_upload
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_app.web.html import run_once
@@ -40,7 +40,7 @@ class PicturesBelow:
         """
         self._client, self._bounds = client, bounds
         self._told: tuple[object, ...] = ()
-        self._uuid = hidden_upload(
+        self._uuid = add_hidden_upload(
             gui, client, _("Picture of a plan"), self._receive, mime_type="image/*,application/pdf"
         )
         self._teller = gui.add_html("")

@@ -73,7 +73,7 @@ class Properties:
 
     def refresh(self) -> None:
         """Show the selected object; its numbers where the person has unfolded them."""
-        item, numbers = self._client.selected, self._client.preferences.numbers
+        item, numbers = self._client.last_selected, self._client.preferences.numbers
         show_if(item is not None, self._colour)
         show_if(item is not None and numbers, self._name)
         fold = fold_button(_("Name, position and size"), "numbers", _("the fields for exact numbers"), unfolded=numbers)
@@ -165,7 +165,7 @@ class Properties:
                 else:
                     editing.set_size(client, object_id, values[SIZE_ORDER])
         finally:
-            now = client.selected
+            now = client.last_selected
             if now is not None:
                 self._fields.show(self._lengths(now), again=True)
 

@@ -12,7 +12,7 @@ from functools import cache
 
 import viser
 
-from diorama_app.panels.fields import hidden_upload
+from diorama_app.panels.fields import add_hidden_upload
 from diorama_app.projects.manage import address_of, find_project, name_of, recent_projects
 from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.reconstruction.starting_rooms import LIVING_ROOM, open_example, start_empty_room
@@ -56,8 +56,8 @@ class StartPage:
         self._refused: dict[str, str] = {}
         """What was typed as a length and is none, by field: it stays there to be corrected, and no room is made."""
         self._opened_over: Project | None = None
-        self._photo_field = hidden_upload(gui, client, _("Start with a photo"), take_photo)
-        self._file_field = hidden_upload(gui, client, _("Start with a file"), self._take_file)
+        self._photo_field = add_hidden_upload(gui, client, _("Start with a photo"), take_photo)
+        self._file_field = add_hidden_upload(gui, client, _("Start with a file"), self._take_file)
         self._opener = LiveHtml(gui, self._act)
         self._tour = gui.add_html("")
         self._tours = 0

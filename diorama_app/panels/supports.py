@@ -34,7 +34,7 @@ class Supports:
 
     def refresh(self) -> None:
         """Show the supporter of the selected object."""
-        item, scene = self._client.selected, self._client.session.scene
+        item, scene = self._client.last_selected, self._client.session.scene
         show_if(item is not None, self._parent)
         edge = None if item is None else scene.support_of(item.id)
         show_if(edge is not None, self._relation)

@@ -55,7 +55,7 @@ def get_networks(client: Client, networks: Sequence[Network], accepted: frozense
     missing = missing_networks(store, networks)
     if not missing:
         raise EditRefused("all networks of this set are already installed")
-    unknown = {n.id for n in missing} - store.accepted_licences() - accepted
+    unknown = {n.id for n in missing} - store.read_accepted_licences() - accepted
     if unknown:
         raise InputError("accept the licences first; nothing was downloaded")
 

@@ -186,7 +186,7 @@ class Client:
     # -- selection --------------------------------------------------------------------------------------------
 
     @property
-    def selected(self) -> SceneObject | None:
+    def last_selected(self) -> SceneObject | None:
         """The object selected last, or None."""
         return self.session.scene.object(self.selection[-1]) if self.selection else None
 

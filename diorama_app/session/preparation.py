@@ -20,8 +20,8 @@ WARM_UP_AFTER_S = 10.0
 
 LEARN = """import os
 getattr(os, "nice", int)(15)
-from diorama_core.library.ingest.known_shapes import known_shapes
-known_shapes()"""
+from diorama_core.library.ingest.known_shapes import load_known_shapes
+load_known_shapes()"""
 """Half a minute of a core, once on a machine, that the first upload of a model would wait for."""
 
 

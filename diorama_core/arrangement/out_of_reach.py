@@ -27,8 +27,8 @@ REASONED_M = 0.3
 """The distance from a place for heights that were reasoned from a photo alone."""
 
 
-def left_where_seen(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
-    """The scene without the edges of objects that their supporters do not reach, and what people should look at.
+def detach_out_of_reach(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
+    """Detach the objects that their supporters do not reach; the new scene, and what people should look at.
 
     Args:
         scene: as observed, before any layout, its shapes decided.

@@ -33,7 +33,7 @@ class SupportEvidence:
     believed: Mapping[str, Support] = field(default_factory=dict)
     """By object the edge that an earlier stage decided on."""
     below: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    """See `seen_below`."""
+    """See `visible_shares_below`."""
 
     @classmethod
     def of(cls, scene: Scene, below: Mapping[str, Mapping[str, float]]) -> SupportEvidence:
@@ -197,7 +197,7 @@ RIM_SHARE = 0.01
 """How far below the rim to look, as a share of the picture's height: past the shadow and the error of a mask."""
 
 
-def seen_below(masks: Mapping[str, Bool[np.ndarray, "h w"]]) -> dict[str, dict[str, float]]:
+def visible_shares_below(masks: Mapping[str, Bool[np.ndarray, "h w"]]) -> dict[str, dict[str, float]]:
     """For each object the share of its lower rim below which each other object is seen.
 
     Args:

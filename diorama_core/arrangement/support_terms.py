@@ -128,7 +128,7 @@ class SupportWeights:
 
 
 @cache
-def fitted_weights() -> SupportWeights:
+def support_weights() -> SupportWeights:
     """The weights that come with the program."""
     weights = json.loads(PATH.read_text(encoding="utf-8"))
     return SupportWeights(weights["terms"], weights["places"], weights["walls"])

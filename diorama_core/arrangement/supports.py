@@ -21,7 +21,7 @@ from diorama_core.arrangement.support_hypotheses import (
     SupportHypothesis,
     support_hypotheses,
 )
-from diorama_core.arrangement.support_terms import SupportWeights, fitted_weights
+from diorama_core.arrangement.support_terms import SupportWeights, support_weights
 from diorama_core.arrangement.surfaces import box_misfit, label_of, object_surfaces
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import AGAINST_WALLS
@@ -69,7 +69,7 @@ class DecidedSupports:
     """What changed, in plain words."""
 
 
-def chosen_supports(
+def choose_supports(
     hypotheses: dict[str, tuple[SupportHypothesis, ...]], weights: SupportWeights
 ) -> dict[str, SupportChoice]:
     """The support of every object that has hypotheses, such that all together cost least and there is no cycle."""
@@ -120,8 +120,8 @@ def with_decided_supports(
         noise: of the observed poses.
         evidence: what else is known.
     """
-    weights = fitted_weights()
-    choices = chosen_supports(support_hypotheses(scene, library, noise, evidence), weights)
+    weights = support_weights()
+    choices = choose_supports(support_hypotheses(scene, library, noise, evidence), weights)
     moved = scene
     for name in _carriers_first(choices):
         choice, item, before = choices[name], moved.object(name), scene.support_of(name)

@@ -190,7 +190,7 @@ class GltfDocument:
     def _indices(self, indices: np.ndarray, vertices: int) -> int:
         data = indices.astype("<u2" if vertices < 65536 else "<u4")
         if self._compressed:
-            view = self._compressed_view(encode_faces(indices, vertices), data, "TRIANGLES")
+            view = self._add_compressed_view(encode_faces(indices, vertices), data, "TRIANGLES")
         else:
             view = self._view(data.tobytes(), _ELEMENT_ARRAY_BUFFER)
         kind = _COMPONENT_TYPES[data.dtype.str[1:]]
@@ -198,7 +198,7 @@ class GltfDocument:
 
     def _vertex_view(self, values: np.ndarray) -> int:
         if self._compressed:
-            return self._compressed_view(encode_vertices(values), values, "ATTRIBUTES")
+            return self._add_compressed_view(encode_vertices(values), values, "ATTRIBUTES")
         return self._view(values.tobytes(), _ARRAY_BUFFER)
 
     def _view(self, data: bytes, target: int | None = None) -> int:
@@ -207,7 +207,7 @@ class GltfDocument:
             entry["target"] = target
         return self.add("bufferViews", entry)
 
-    def _compressed_view(self, encoded: bytes, values: np.ndarray, mode: str) -> int:
+    def _add_compressed_view(self, encoded: bytes, values: np.ndarray, mode: str) -> int:
         """A view of the fallback buffer, which no file stores, with the compressed data that stand for it."""
         self.use(MESHOPT_EXTENSION, required=True)
         stride = values.itemsize * (values.shape[1] if values.ndim > 1 else 1)

@@ -184,11 +184,13 @@ def _measure(surface: Surface) -> _Measured:
         a, b, c = (surface.vertices[surface.faces[:, k]].astype(np.float64) for k in range(3))
         vectors = 0.5 * np.cross(b - a, c - a)
         centroids = (a + b + c) / 3.0
-        _MEASURED[surface] = _Measured(centroids.astype(np.float32), vectors.astype(np.float32), enclosed_m3(surface))
+        _MEASURED[surface] = _Measured(
+            centroids.astype(np.float32), vectors.astype(np.float32), surface_volume_m3(surface)
+        )
     return _MEASURED[surface]
 
 
-def enclosed_m3(surface: Surface) -> float:
+def surface_volume_m3(surface: Surface) -> float:
     """Volume that a surface encloses; 0 when it is not closed."""
     _, place = unique_rows(np.round(surface.vertices, 5))
     corners = place[surface.faces]

@@ -21,7 +21,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError
 
 from diorama_core.geometry.vectors import unique_rows
-from diorama_core.scene.values import ArrayValue, frozen_array
+from diorama_core.scene.values import ArrayValue, read_only_array
 
 TIGHT = 0.88
 """A simpler body is taken when the hull fills at least this share of it."""
@@ -55,7 +55,7 @@ class ConvexPart(ArrayValue):
 
     def __post_init__(self) -> None:
         for name in ("vertices", "normals", "edges"):
-            object.__setattr__(self, name, frozen_array(getattr(self, name), (-1, 3)))
+            object.__setattr__(self, name, read_only_array(getattr(self, name), (-1, 3)))
 
 
 def box_part(lower: object, upper: object) -> ConvexPart:

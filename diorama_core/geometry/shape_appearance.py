@@ -50,7 +50,7 @@ class ShapeAppearance:
         """Points spread evenly over the surface, the same ones every time; none where there is no surface."""
         return self._spread(count)[0]
 
-    def coloured_points(self, count: int) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, "n 3"]]:
+    def spread_coloured_points(self, count: int) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, "n 3"]]:
         """These points with the colours (sRGB, 0 to 1) of the faces they lie on."""
         points, face = self._spread(count)
         return points, self.face_rgba[face, :3] / 255.0

@@ -35,7 +35,7 @@ REPLICA_STEPS, MATTERPORT_STEPS = 6553.5, 4000.0
 """Steps of depth a metre."""
 
 
-def numbered_frames(folder: Path) -> Frames:
+def seven_scenes_frames(folder: Path) -> Frames:
     """`frame-000000.depth.png` (or .pgm) in millimetres with `frame-000000.pose.txt`, also in folders `seq-01`."""
     files, frames = ContainedFiles(folder, InputError), []
     info = text_of(folder / "_info.txt") or text_of(folder / "info.txt")
@@ -110,7 +110,7 @@ def _has(head: FileHead, *words: str) -> bool:
 
 
 DATA_SET_FORMS = (
-    FrameForm("7-Scenes, ScanNet frames", lambda h: _has(h, ".depth.p", ".pose.txt"), numbered_frames),
+    FrameForm("7-Scenes, ScanNet frames", lambda h: _has(h, ".depth.p", ".pose.txt"), seven_scenes_frames),
     FrameForm("Replica frames", lambda h: _has(h, "/traj.txt", "/results/depth"), replica_frames),
     FrameForm(
         "Matterport3D frames",

@@ -23,7 +23,7 @@ from diorama_core.importing.room import room_of, supports_of
 from diorama_core.importing.storeys import rooms_of_floors
 from diorama_core.library.ingest.frames import UNKNOWN
 from diorama_core.library.ingest.given import Given, axis_vector
-from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
+from diorama_core.library.ingest.known_shapes import KnownShapes, load_known_shapes
 from diorama_core.library.ingest.models import RawModel
 from diorama_core.library.ingest.names import words_of
 from diorama_core.library.ingest.shaping import ModelSource, ingest_model
@@ -119,7 +119,7 @@ def take_missing_shapes(
 
 def _learn(progress: Progress) -> KnownShapes:
     message = "learning what furniture looks like (once)"
-    return known_shapes(on_step=lambda share: progress.report(0.5 * share, message))
+    return load_known_shapes(on_step=lambda share: progress.report(0.5 * share, message))
 
 
 def _add(part: Part, path: Path, sink: ShapeSink, known: KnownShapes) -> _Shaped:

@@ -17,7 +17,7 @@ from diorama_core.importing.opening import Opened, open_marked
 from diorama_core.importing.point_cloud import PointCloud
 from diorama_core.library.catalogue import base_id
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.library.store import StoredLibrary, open_library, stored_libraries
+from diorama_core.library.store import StoredLibrary, list_libraries, open_library
 from diorama_core.library.user_library import OWN
 from diorama_core.progress import SILENT, Progress
 from diorama_core.project.storage import OWN_SHAPES
@@ -109,7 +109,7 @@ def _import_mark(
 ) -> Imported:
     """The scene that Diorama wrote, and the names of the libraries that have its shapes."""
     name = library_name or _library_name(str(marked.provenance.get("library", "built-in")))
-    known, of_person = _ids(name), _ids(OWN) if OWN in stored_libraries() else frozenset[str]()
+    known, of_person = _ids(name), _ids(OWN) if OWN in list_libraries() else frozenset[str]()
     opened = _with_shapes(path, shapes, marked, known | of_person, progress)
     used = {base_id(o.shape_id) for o in opened.scene.objects}
     also = [OWN] if (used - known) & of_person and OWN not in name.split("+") else []

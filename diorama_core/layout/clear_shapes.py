@@ -83,7 +83,7 @@ def _better(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, name: 
     for shape in sorted(common - {members[0].shape_id}):
         other = scene
         for o in members:
-            other = _reshaped(other, o, _candidate_of(o, shape))
+            other = _replace_shape(other, o, _candidate_of(o, shape))
         options.append((_cost(other, library, noise, [other.object(o.id) for o in members]) - now, shape, other))
     cost, _, best = min(options, key=lambda option: option[:2])
     return cost, best
@@ -103,7 +103,7 @@ def _as_it_is(item: SceneObject) -> Candidate:
     return Candidate(item.shape_id, item.shape_size_m, score, item.pose)
 
 
-def _reshaped(scene: Scene, item: SceneObject, candidate: Candidate) -> Scene:
+def _replace_shape(scene: Scene, item: SceneObject, candidate: Candidate) -> Scene:
     """The scene with an object in another shape, and its loads where they were seen."""
     new = replace(item, shape_id=candidate.shape_id, shape_size_m=candidate.shape_size_m, pose=candidate.pose)
     edges = tuple(replace(s, parent_surface=None) if s.parent == item.id else s for s in scene.supports)

@@ -47,14 +47,16 @@ def mesh_overlap_m3(scene: Scene, library: ShapeLibrary, *, skip_supporters: boo
 
 def _solid(scene: Scene, library: ShapeLibrary, problem: Problem, index: int) -> manifold3d.Manifold:
     item = scene.object(problem.ids[index])
-    solid = _CLOSED.get(library.shape(item.shape_id).content_hash, lambda: _closed(library.mesh(item.shape_id)))
+    solid = _CLOSED.get(
+        library.shape(item.shape_id).content_hash, lambda: _unite_closed_bodies(library.mesh(item.shape_id))
+    )
     if solid is None:
         hulls = [_manifold(trimesh.convex.convex_hull(q.vertices)) for q in problem.parts[index]]
         solid = manifold3d.Manifold.batch_boolean(hulls, manifold3d.OpType.Add)
     return solid.transform(item.pose.matrix[:3])
 
 
-def _closed(mesh: trimesh.Trimesh) -> manifold3d.Manifold | None:
+def _unite_closed_bodies(mesh: trimesh.Trimesh) -> manifold3d.Manifold | None:
     """The union of a mesh's closed bodies; None where it has none, or they make no solid."""
     closed = [_manifold(b) for b in mesh.split(only_watertight=False) if b.is_watertight and b.volume > 0]
     solid = manifold3d.Manifold.batch_boolean(closed, manifold3d.OpType.Add) if closed else None

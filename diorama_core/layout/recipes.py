@@ -31,20 +31,20 @@ class RoomByRoom:
             if room.id not in in_rooms.values():
                 continue
 
-            def seen(part: Scene, costs: Sequence[tuple[str, float]], whole: Scene = whole) -> None:
+            def preview_part(part: Scene, costs: Sequence[tuple[str, float]], whole: Scene = whole) -> None:
                 if preview is not None:
                     preview(_with_part(whole, part), costs)
 
             share = progress.part(number / len(scene.rooms), (number + 1) / len(scene.rooms))
-            part, report = self.stage.optimise(part_of_home(whole, [room.id]), share, seen)
+            part, report = self.stage.optimise(part_of_home(whole, [room.id]), share, preview_part)
             whole = _with_part(whole, part)
             reports.append(report)
         if not reports:
             return self.stage.optimise(scene, progress, preview)
         return whole, LayoutReport(
             reports[0].recipe,
-            _summed([r.before for r in reports]),
-            _summed([r.after for r in reports]),
+            _sum_costs([r.before for r in reports]),
+            _sum_costs([r.after for r in reports]),
             sum(r.seconds for r in reports),
             tuple(reason for r in reports for reason in r.reasons),
             tuple(d for r in reports for d in r.disagreements),
@@ -60,7 +60,7 @@ def _with_part(scene: Scene, part: Scene) -> Scene:
     return replace(scene, objects=objects, supports=(*supports, *held.values()))
 
 
-def _summed(costs: Sequence[Mapping[str, float]]) -> dict[str, float]:
+def _sum_costs(costs: Sequence[Mapping[str, float]]) -> dict[str, float]:
     return {name: sum(c.get(name, 0.0) for c in costs) for c in costs for name in c}
 
 

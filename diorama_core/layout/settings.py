@@ -212,6 +212,6 @@ PUBLISHED_COSTS = ("align", "heading", "place", "neighbours", "volume", "collisi
 DEFAULT_COSTS = ("outline", "distance")
 
 
-def weighted_costs(recipe: str) -> tuple[str, ...]:
+def cost_names(recipe: str) -> tuple[str, ...]:
     """The fields of `Weights` that make a difference to a recipe."""
     return DEFAULT_COSTS if recipe == "feasible" else PUBLISHED_COSTS

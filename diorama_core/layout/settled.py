@@ -41,11 +41,11 @@ class Settled:
         moved = {o.id: o.pose for o in scene.objects}
         for item in sorted(scene.objects, key=lambda o: (len(ancestors(scene, o.id)), o.id)):
             if not item.locked:
-                moved[item.id] = _lowered(scene, item, moved)
+                moved[item.id] = _lower(scene, item, moved)
         before = _overlap(scene, moved)
         for k in range(self.rounds):
             progress.report(k / self.rounds, "Pushing objects apart")
-            if not _pushed(scene, moved):
+            if not _push_apart(scene, moved):
                 break
         result = edits.place(scene, moved)
         report = LayoutReport(
@@ -56,7 +56,7 @@ class Settled:
         return result, report
 
 
-def _lowered(scene: Scene, item: SceneObject, poses: Mapping[str, Pose]) -> Pose:
+def _lower(scene: Scene, item: SceneObject, poses: Mapping[str, Pose]) -> Pose:
     """Its pose with its bottom on the top of its supporter; unchanged for what hangs."""
     edge = scene.support_of(item.id)
     pose = poses[item.id]
@@ -72,7 +72,7 @@ def _lowered(scene: Scene, item: SceneObject, poses: Mapping[str, Pose]) -> Pose
     return pose.move((0.0, 0.0, top - _span(item, pose)[0]))
 
 
-def _pushed(scene: Scene, poses: dict[str, Pose]) -> bool:
+def _push_apart(scene: Scene, poses: dict[str, Pose]) -> bool:
     """One round; whether anything moved."""
     items = [o for o in scene.objects if not o.hidden]
     changed = False
@@ -84,7 +84,7 @@ def _pushed(scene: Scene, poses: dict[str, Pose]) -> bool:
             free = [o for o in (a, b) if not o.locked]
             for o in free:
                 share = (1.0 if o is a else -1.0) * way / len(free)
-                for carried in (o.id, *_carried(scene, o.id)):
+                for carried in (o.id, *_find_loads(scene, o.id)):
                     poses[carried] = poses[carried].move((share[0], share[1], 0.0))
             changed = changed or bool(free)
     return changed
@@ -124,7 +124,7 @@ def _overlap(scene: Scene, poses: Mapping[str, Pose]) -> float:
     return float(sum(np.linalg.norm(way) for way in ways if way is not None))
 
 
-def _carried(scene: Scene, object_id: str) -> list[str]:
+def _find_loads(scene: Scene, object_id: str) -> list[str]:
     return [o.id for o in scene.objects if object_id in ancestors(scene, o.id)]
 
 

@@ -36,12 +36,12 @@ def resizes(start: Scene, final: Scene) -> dict[str, float]:
     return {o.id: float(np.exp(np.abs(np.log(o.size_m / was)).max())) for was, o in both}
 
 
-def resized_too_much(start: Scene, final: Scene) -> dict[str, tuple[str, ...]]:
+def find_excessive_resizes(start: Scene, final: Scene) -> dict[str, tuple[str, ...]]:
     """The problem of each object whose size left what is believed of it."""
     return {i: (RESIZED,) for i, factor in resizes(start, final).items() if factor > MAX_RESIZE + 1e-6}
 
 
-def resized_in_words(start: Scene, final: Scene) -> tuple[str, ...]:
+def resizes_in_words(start: Scene, final: Scene) -> tuple[str, ...]:
     """One line for each object of another size: from which size to which."""
     return tuple(
         f"resized: {final.object(i).label}, {_size(start.object(i))} to {_size(final.object(i))} cm"

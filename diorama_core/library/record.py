@@ -14,7 +14,7 @@ from jaxtyping import Float
 from diorama_core.errors import LibraryError
 from diorama_core.io.bounded import parse_json, shorten
 from diorama_core.scene.types import FaceName
-from diorama_core.scene.values import ArrayValue, frozen_array
+from diorama_core.scene.values import ArrayValue, read_only_array
 
 BUILT_IN = "built in"
 """Source of the shapes that come with Diorama."""
@@ -34,7 +34,7 @@ class SupportSurface(ArrayValue):
     """Inside the shape (a shelf, a drawer) rather than on top of it."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "polygon", frozen_array(self.polygon, (-1, 3)))
+        object.__setattr__(self, "polygon", read_only_array(self.polygon, (-1, 3)))
 
     @property
     def height_m(self) -> float:

@@ -26,8 +26,8 @@ from diorama_core.library.store import (
     StoredLibrary,
     create_library,
     library_folder,
+    list_libraries,
     open_library,
-    stored_libraries,
 )
 
 MAX_NAME = 80
@@ -126,7 +126,7 @@ class UserLibrary:
         self._library = library
         self._own: StoredLibrary | None = None
         self._lock = threading.Lock()
-        self._combined = OWN in stored_libraries()
+        self._combined = OWN in list_libraries()
         if self._combined:
             self._library = CombinedLibrary([library, open_library(OWN)])
 
@@ -148,7 +148,7 @@ class UserLibrary:
 
     def uploads(self) -> tuple[Shape, ...]:
         """The records of all uploads, deleted ones included."""
-        known = self._own is not None or OWN in stored_libraries()
+        known = self._own is not None or OWN in list_libraries()
         return self.own().shapes() if known else ()
 
     def has_own(self, shape_id: str) -> bool:

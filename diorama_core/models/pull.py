@@ -68,7 +68,7 @@ def pull(
 
 
 def _ask(store: ModelStore, networks: Sequence[Network], accept: Accept) -> None:
-    known = store.accepted_licences()
+    known = store.read_accepted_licences()
     unknown = [n for n in networks if n.id not in known]
     if not unknown:
         return

@@ -249,8 +249,8 @@ class ModelStore:
         """Delete a network's files."""
         shutil.rmtree(self.folder_of(network), ignore_errors=True)
 
-    def accepted_licences(self) -> frozenset[str]:
-        """Ids of the networks whose licence was accepted on this machine."""
+    def read_accepted_licences(self) -> frozenset[str]:
+        """Read the ids of the networks whose licence was accepted on this machine."""
         try:
             return frozenset(
                 TypeAdapter(list[str]).validate_json(
@@ -262,7 +262,7 @@ class ModelStore:
 
     def accept_licences(self, network_ids: frozenset[str]) -> None:
         """Remember that the licences of these networks were accepted."""
-        write_json(self.folder / LICENCES, sorted(self.accepted_licences() | network_ids))
+        write_json(self.folder / LICENCES, sorted(self.read_accepted_licences() | network_ids))
 
 
 def _candidates(source: Path, network: Network, file: ModelFile) -> list[Path]:

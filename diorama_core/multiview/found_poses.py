@@ -162,7 +162,7 @@ def _cancellable(colmap: ModuleType, progress: Progress, step: Callable[..., Any
         running = pool.submit(step, cancellation_token=token)
         while not running.done():
             wait([running], timeout=0.2)  # seconds, then it is looked whether the job was cancelled
-            if progress.token.cancelled:
+            if progress.token.is_cancelled:
                 token.cancel()
         progress.check()
         return running.result()

@@ -17,7 +17,7 @@ import numpy as np
 from diorama_core.architecture.along_sight import move_in_front_of_walls, snap_mounted_objects
 from diorama_core.architecture.walls.passages import without_openings
 from diorama_core.arrangement.explain import SCALE, reasons_of_change
-from diorama_core.arrangement.out_of_reach import left_where_seen
+from diorama_core.arrangement.out_of_reach import detach_out_of_reach
 from diorama_core.arrangement.support_hypotheses import ObservationNoise
 from diorama_core.artefacts import (
     ArchitectureEstimate,
@@ -287,7 +287,7 @@ PLAN: tuple[Step, ...] = (
         measured=True,
     ),
     Correction(
-        left_where_seen,
+        detach_out_of_reach,
         ("in_clear_shapes", "library", "noise"),
         "on_near_supports",
         "nothing reaches it where it was seen",
@@ -369,7 +369,7 @@ def evaluate(
             if step.gives == LOOKS_AHEAD:
                 ahead.close()
             known[step.gives] = step.evaluate(stages, known, runner, part)
-            part.found(finding(step.gives, known[step.gives]), drawing(step.gives, known))
+            part.report_finding(finding(step.gives, known[step.gives]), drawing(step.gives, known))
         known |= {name: future.result() for name, future in begun.items()}
     return known
 

@@ -18,7 +18,7 @@ from diorama_core.arrangement.support_hypotheses import (
     REASONED,
     ObservationNoise,
     SupportEvidence,
-    seen_below,
+    visible_shares_below,
 )
 from diorama_core.arrangement.support_terms import sentence_of
 from diorama_core.arrangement.supports import DecidedSupports, SupportChoice, with_decided_supports
@@ -106,7 +106,7 @@ def decide_supports(
         noise: of the observed positions.
         objects: of the photo, with their masks.
     """
-    below = seen_below({item.id: item.mask for item in objects})
+    below = visible_shares_below({item.id: item.mask for item in objects})
     return with_decided_supports(scene, library, noise, SupportEvidence.of(scene, below))
 
 

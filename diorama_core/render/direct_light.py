@@ -67,7 +67,7 @@ class SunLight:
         disc = SUN_BLUR * (2 * sample - 1) @ np.stack([across, np.cross(self.direction, across)]).astype(np.float32)
         toward = (self.direction.astype(np.float32) + disc).astype(np.float32)
         strength = np.maximum(dot(normals, toward), 0)
-        strength = _unblocked_strength(strength, points + np.float32(LIFT_M) * normals, toward, self.blockers, np.inf)
+        strength = _visible_strength(strength, points + np.float32(LIFT_M) * normals, toward, self.blockers, np.inf)
         return strength[:, None] * self.irradiance.astype(np.float32)
 
 
@@ -103,11 +103,11 @@ class LampLight:
         squared = dot(ray, ray)
         distance = np.sqrt(squared)
         strength = np.maximum(dot(normals, ray), 0) / distance / np.maximum(squared, np.float32(NEAREST_M**2))
-        strength = _unblocked_strength(strength, origins, ray, self.blockers, 1.0)
+        strength = _visible_strength(strength, origins, ray, self.blockers, 1.0)
         return (strength[:, None] * self.intensity).astype(np.float32)
 
 
-def _unblocked_strength(
+def _visible_strength(
     strength: Float32[np.ndarray, "n"],
     origins: Float32[np.ndarray, "n 3"],
     toward: Float32[np.ndarray, "n 3"],

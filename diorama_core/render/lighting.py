@@ -171,7 +171,7 @@ def irradiance(
     return window / max(effort.window_rays, 1), around / max(effort.sky_rays, 1)
 
 
-def unshadowed(
+def irradiance_without_shadows(
     points: Float32[np.ndarray, "n 3"], normals: Float32[np.ndarray, "n 3"], light: Lighting
 ) -> Float32[np.ndarray, "n 3"]:
     """Light on places as if nothing stood in the way but of the sun and lamps: what bounced light is reckoned from."""
@@ -237,7 +237,7 @@ def _from_around(
         normals = facing(normals, toward)
         points = origins.take(near, axis=0) + toward * chosen.distance[:, None]
         fade = (chosen.distance[:, None] / np.float32(light.reach_m)) ** 2
-        bounced = np.minimum(np.float32(0.8) * colour * unshadowed(points, normals, light), MAX_BOUNCED)
+        bounced = np.minimum(np.float32(0.8) * colour * irradiance_without_shadows(points, normals, light), MAX_BOUNCED)
         radiance[near] += (1 - fade) * (bounced - radiance[near])
     return radiance
 

@@ -13,7 +13,7 @@ from diorama_core.progress import SILENT, Progress
 from diorama_core.render.filters import tone_mapped
 from diorama_core.render.gathering import gather_light
 from diorama_core.render.gloss import gloss_share
-from diorama_core.render.lighting import Effort, Lighting, ambient, unshadowed
+from diorama_core.render.lighting import Effort, Lighting, ambient, irradiance_without_shadows
 from diorama_core.render.raycast import Grid, View, bands, pixel_centres, pixel_footprint
 from diorama_core.render.world import Places, World
 from diorama_core.workers import map_threads
@@ -128,7 +128,7 @@ def _relight(places: Places, fallen: Float32[np.ndarray, "n 3"], light: Lighting
     known = np.flatnonzero(places.photographed)
     if light.relights or not len(known):
         return fallen
-    free = unshadowed(places.points[known], places.normals[known], replace(light, direct=()))
+    free = irradiance_without_shadows(places.points[known], places.normals[known], replace(light, direct=()))
     relit = fallen.copy()
     if light.direct:
         relit[known] = fallen[known] / free.mean(axis=1, keepdims=True)
@@ -163,7 +163,9 @@ def _environment(world: World, rays: RayArray, light: Lighting) -> Float32[np.nd
     hit_rows = np.flatnonzero(hits.is_hit)
     if len(hit_rows):
         places = world.places(rays[hit_rows], hits.select(hit_rows))
-        seen[hit_rows] = 0.85 * places.albedo * unshadowed(places.points, places.normals, light) + places.emissive
+        seen[hit_rows] = (
+            0.85 * places.albedo * irradiance_without_shadows(places.points, places.normals, light) + places.emissive
+        )
     return seen
 
 
@@ -190,7 +192,7 @@ def _beyond(
     hit_rows = np.flatnonzero(hits.is_hit)
     if len(hit_rows):
         behind = world.places(onward[hit_rows], hits.select(hit_rows))
-        fallen = unshadowed(behind.points, behind.normals, light)
+        fallen = irradiance_without_shadows(behind.points, behind.normals, light)
         seen[hit_rows] = _radiance(world, behind, onward[hit_rows], fallen, light, depth + 1)
     return seen
 

@@ -104,7 +104,7 @@ class PointEmbedding:
 
     def shape(self, library: ShapeLibrary, shape: Shape) -> Float32[np.ndarray, " d"]:
         """By points of its surface in their colours."""
-        return self.tower.shape(*appearance_of(library.parts(shape.id)).coloured_points(POINTS))
+        return self.tower.shape(*appearance_of(library.parts(shape.id)).spread_coloured_points(POINTS))
 
 
 @dataclass(frozen=True)

@@ -181,7 +181,7 @@ def _parts_of(entry: Entry) -> Mapping[Part, object]:
 def _scene_of(parts: Mapping[Part, object], now: Scene, after: Scene) -> Scene:
     """A scene of parts, in the order of the present one; what is new in it, in the order of the other."""
 
-    def ordered_parts(kind: str, ids: Iterable[str]) -> tuple[Any, ...]:
+    def order_parts(kind: str, ids: Iterable[str]) -> tuple[Any, ...]:
         return tuple(parts[(kind, i)] for i in dict.fromkeys(ids) if (kind, i) in parts)
 
     order = [o.id for o in after.objects]
@@ -192,10 +192,10 @@ def _scene_of(parts: Mapping[Part, object], now: Scene, after: Scene) -> Scene:
     children = [child for kind, child in parts if kind == "support"]
     return replace(
         now,
-        objects=ordered_parts("item", objects),
-        supports=ordered_parts("support", children),
-        architecture=replace(now.architecture, planes=ordered_parts("plane", planes)),
-        rooms=ordered_parts("room", (r.id for r in (*now.rooms, *after.rooms))),
+        objects=order_parts("item", objects),
+        supports=order_parts("support", children),
+        architecture=replace(now.architecture, planes=order_parts("plane", planes)),
+        rooms=order_parts("room", (r.id for r in (*now.rooms, *after.rooms))),
         camera=cast("Camera | None", parts[("field", "camera")]),
         light=cast("RoomLight | None", parts[("field", "light")]),
         light_settings=cast("LightSettings", parts[("field", "light_settings")]),

@@ -16,7 +16,7 @@ from jaxtyping import Float
 from diorama_core.scene.belief import Belief
 from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.light_settings import PHOTO_LIGHT, LightSettings
-from diorama_core.scene.values import ArrayValue, Vector3, frozen_array
+from diorama_core.scene.values import ArrayValue, Vector3, read_only_array
 
 PlaneRole = Literal["floor", "ceiling", "wall"]
 Relation = Literal["placed on", "mounted on"]
@@ -92,7 +92,7 @@ class Camera(ArrayValue):
     """Rigid: `p_world = T_world_camera @ p_camera`, camera axes x right, y down, z forward."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "T_world_camera", frozen_array(self.T_world_camera, (4, 4)))
+        object.__setattr__(self, "T_world_camera", read_only_array(self.T_world_camera, (4, 4)))
 
     @cached_property
     def T_camera_world(self) -> Float[np.ndarray, "4 4"]:
@@ -137,9 +137,9 @@ class Pose(ArrayValue):
     """Per-axis scale of the shape along its own axes; positive."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "R_world_object", frozen_array(self.R_world_object, (3, 3)))
-        object.__setattr__(self, "position", frozen_array(self.position, (3,)))
-        object.__setattr__(self, "scale", frozen_array(self.scale, (3,)))
+        object.__setattr__(self, "R_world_object", read_only_array(self.R_world_object, (3, 3)))
+        object.__setattr__(self, "position", read_only_array(self.position, (3,)))
+        object.__setattr__(self, "scale", read_only_array(self.scale, (3,)))
         R = self.R_world_object
         if not (np.abs(R).max() < 2.0 and np.abs(R @ R.T - np.eye(3)).max() < 1e-5 and np.linalg.det(R) > 0):
             raise ValueError("the rotation must be orthonormal and right-handed")
@@ -231,7 +231,7 @@ class Plane(ArrayValue):
     """Standard deviation of its place along the normal; 0 where a person put it, None where nothing is known."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "polygon", frozen_array(self.polygon, (-1, 3)))
+        object.__setattr__(self, "polygon", read_only_array(self.polygon, (-1, 3)))
         if len(self.polygon) < 3:
             raise ValueError(f"plane {self.id} needs at least three corners")
 

@@ -13,7 +13,7 @@ Vector3 = Real[np.ndarray, "3"] | Sequence[float]
 """Three numbers along x, y and z as a caller has them; made an array of floats where they arrive."""
 
 
-def frozen_array(value: Any, shape: tuple[int, ...], dtype: Any = np.float64) -> np.ndarray:
+def read_only_array(value: Any, shape: tuple[int, ...], dtype: Any = np.float64) -> np.ndarray:
     """A read-only copy of `value` with the given shape (-1 matches any length).
 
     Raises:

@@ -19,7 +19,7 @@ from diorama_core.arrangement.facing.evidence import HEADINGS, STEP_RAD, FacingR
 from diorama_core.arrangement.facing.solve import DAMPING, PICTURE, ROUNDS, Factors
 from diorama_core.arrangement.facing.terms import TERMS
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto
-from diorama_core.evaluation.benchmarks.photo_build import annotated_inputs
+from diorama_core.evaluation.benchmarks.photo_build import read_annotated_inputs
 from diorama_core.evaluation.benchmarks.photos import PhotoPlan
 from diorama_core.evaluation.metrics.annotated import FRONT_TOLERANCE_DEG
 from diorama_core.library.record import ShapeLibrary
@@ -62,7 +62,7 @@ def gather(asked: PhotoPlan, library: ShapeLibrary, progress: Progress) -> list[
     for k, task in enumerate(asked.tasks):
         step = progress.part(k / len(asked.tasks), (k + 1) / len(asked.tasks))
         step.report(0.0, task.title)
-        case = annotated_inputs(task)
+        case = read_annotated_inputs(task)
         have = evaluate(embedded_stages(case.inputs, library), {"given": case.inputs}, wanted, Runner(task.cache), step)
         stage = RenderAndCompare(library)
         inputs, objects, geometry, depth, shapes = (have[name] for name in wanted)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.arrangement.out_of_reach import left_where_seen
+from diorama_core.arrangement.out_of_reach import detach_out_of_reach
 from diorama_core.arrangement.support_hypotheses import MEASURED, REASONED
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.progress import Progress
@@ -28,7 +28,7 @@ def cup_by_the_wall(room: Room, gap_m: float, **more) -> tuple[Scene, str]:
 
 def test_a_cup_in_the_air_stays_where_it_was_measured(room: Room) -> None:
     scene, cup = cup_by_the_wall(room, 0.3)
-    left, reasons = left_where_seen(scene, LIBRARY, MEASURED)
+    left, reasons = detach_out_of_reach(scene, LIBRARY, MEASURED)
     assert left.support_of(cup) is None
     assert "please check" in reasons[0]
     settled, report = FeasibleRecipe(LIBRARY, depth_measured=True).optimise(left, Progress())
@@ -39,12 +39,12 @@ def test_a_cup_in_the_air_stays_where_it_was_measured(room: Room) -> None:
 @pytest.mark.parametrize(("gap_m", "locked"), [(0.05, False), (0.3, True)])
 def test_what_is_near_its_wall_or_locked_keeps_it(room: Room, gap_m: float, locked: bool) -> None:
     scene, _ = cup_by_the_wall(room, gap_m, locked=locked)
-    assert left_where_seen(scene, LIBRARY, MEASURED) == (scene, ())
+    assert detach_out_of_reach(scene, LIBRARY, MEASURED) == (scene, ())
 
 
 def test_a_photo_alone_does_not_tell_how_far_from_a_wall_it_is(room: Room) -> None:
     scene, _ = cup_by_the_wall(room, 0.3)
-    assert left_where_seen(scene, LIBRARY, REASONED) == (scene, ())
+    assert detach_out_of_reach(scene, LIBRARY, REASONED) == (scene, ())
 
 
 @pytest.mark.parametrize(
@@ -57,8 +57,8 @@ def test_heights_over_a_table_tell_more_where_they_were_measured(
     height = room.library.shape("cup_21").size_m[2]
     cup = room.put("cup_21", (0.0, 1.0, room.objects[0].size_m[2] + gap_m + height / 2), on=table)
     scene = room.scene(camera=looking_north())
-    assert (left_where_seen(scene, LIBRARY, MEASURED)[0].support_of(cup) is not None) == measured
-    assert (left_where_seen(scene, LIBRARY, REASONED)[0].support_of(cup) is not None) == reasoned
+    assert (detach_out_of_reach(scene, LIBRARY, MEASURED)[0].support_of(cup) is not None) == measured
+    assert (detach_out_of_reach(scene, LIBRARY, REASONED)[0].support_of(cup) is not None) == reasoned
 
 
 def test_what_was_measured_beside_a_table_is_not_on_it(room: Room) -> None:
@@ -67,7 +67,7 @@ def test_what_was_measured_beside_a_table_is_not_on_it(room: Room) -> None:
     height = room.library.shape("cup_21").size_m[2]
     cup = room.put("cup_21", (depth / 2 + 0.1, 1.0, top + height / 2), on=table)
     scene = room.scene(camera=looking_north())
-    assert left_where_seen(scene, LIBRARY, MEASURED)[0].support_of(cup) is None
+    assert detach_out_of_reach(scene, LIBRARY, MEASURED)[0].support_of(cup) is None
 
 
 def test_half_of_what_is_long_may_be_beside_a_table(room: Room) -> None:
@@ -77,7 +77,7 @@ def test_half_of_what_is_long_may_be_beside_a_table(room: Room) -> None:
     long = 0.6 / size[0]
     row = room.put("books_18", (depth / 2 + 0.1, 1.0, top + size[2] / 2), on=table, scale=(long, 1.0, 1.0))
     scene = room.scene(camera=looking_north())
-    assert left_where_seen(scene, LIBRARY, MEASURED)[0].support_of(row) is not None
+    assert detach_out_of_reach(scene, LIBRARY, MEASURED)[0].support_of(row) is not None
 
 
 def test_a_plant_in_the_air_over_a_table_stays_there_and_one_over_the_floor_comes_down(room: Room) -> None:
@@ -86,7 +86,7 @@ def test_a_plant_in_the_air_over_a_table_stays_there_and_one_over_the_floor_come
     low = room.put("cup_21", (1.5, 1.0, 0.8), on="floor", box_px=BOX_PX)
     scene = room.scene(camera=looking_north())
     potted = tuple(replace(o, category="plant") if o.id in (above, low) else o for o in scene.objects)
-    left, _ = left_where_seen(replace(scene, objects=potted), LIBRARY, MEASURED)
+    left, _ = detach_out_of_reach(replace(scene, objects=potted), LIBRARY, MEASURED)
     assert left.support_of(above) is None
     assert left.support_of(low) is not None
     settled, _ = FeasibleRecipe(LIBRARY, depth_measured=True).optimise(left, Progress())
@@ -97,7 +97,7 @@ def test_a_plant_in_the_air_over_a_table_stays_there_and_one_over_the_floor_come
 def test_furniture_keeps_its_floor(room: Room) -> None:
     room.put("table_0", (0.0, 1.0, 0.9))
     scene = room.scene(camera=looking_north())
-    assert left_where_seen(scene, LIBRARY, MEASURED) == (scene, ())
+    assert detach_out_of_reach(scene, LIBRARY, MEASURED) == (scene, ())
 
 
 @pytest.mark.parametrize(("yaw", "stays"), [(-np.pi / 2, True), (-np.pi / 2 + 0.5, True), (np.pi, False)])
@@ -106,5 +106,5 @@ def test_a_picture_that_was_measured_turned_from_its_wall_hangs_on_another_one(
 ) -> None:
     picture = room.put("picture_13", (0.5, 1.5, 1.5), on="wall_2", relation="mounted on", yaw=yaw)
     scene = room.scene(camera=looking_north())
-    assert (left_where_seen(scene, LIBRARY, MEASURED)[0].support_of(picture) is not None) == stays
-    assert left_where_seen(scene, LIBRARY, REASONED) == (scene, ())
+    assert (detach_out_of_reach(scene, LIBRARY, MEASURED)[0].support_of(picture) is not None) == stays
+    assert detach_out_of_reach(scene, LIBRARY, REASONED) == (scene, ())

@@ -17,10 +17,10 @@ from diorama_core.arrangement.support_hypotheses import (
     SupportHypothesis,
     support_hypotheses,
 )
-from diorama_core.arrangement.support_terms import TERMS, SupportWeights, fitted_weights, sentence_of
+from diorama_core.arrangement.support_terms import TERMS, SupportWeights, sentence_of, support_weights
 from diorama_core.arrangement.supports import (
     STANDING_TERMS,
-    chosen_supports,
+    choose_supports,
     standing_walls,
     wall_relation,
     with_decided_supports,
@@ -134,7 +134,7 @@ def test_a_wider_gap_never_speaks_for_a_supporter(drawn: tuple[float, float, flo
 
     def cost(gap: float) -> float:
         edge = Support("cup", "table")
-        return fitted_weights().cost(
+        return support_weights().cost(
             SupportHypothesis(edge, "object", kind, carrier, believed, gap, outside, below=below)
         )
 
@@ -142,7 +142,7 @@ def test_a_wider_gap_never_speaks_for_a_supporter(drawn: tuple[float, float, flo
 
 
 def test_fitted_weights_name_every_term_and_say_how_they_were_found() -> None:
-    weights = fitted_weights()
+    weights = support_weights()
     assert set(weights.terms) == {term.name for term in TERMS}
     assert len(weights.places) == 16
     assert set(weights.walls) == {"measured", "reasoned"}
@@ -154,7 +154,7 @@ def test_without_weights_of_a_term_it_says_nothing(room: Room) -> None:
     hypotheses = support_hypotheses(scene, LIBRARY, MEASURED, SupportEvidence())
     nothing = SupportWeights({}, {}, {})
     assert all(nothing.cost(h) == 0.0 for of_one in hypotheses.values() for h in of_one)
-    assert set(chosen_supports(hypotheses, nothing)) == set(hypotheses)
+    assert set(choose_supports(hypotheses, nothing)) == set(hypotheses)
 
 
 def test_terms_are_told_in_plain_words() -> None:
@@ -168,7 +168,7 @@ def walls_of_cabinet(room: Room, gap_m: float, yaw: float, noise: ObservationNoi
     """Those of a cabinet before the far wall of a room of 6 x 5 m, at x = 0."""
     cabinet = room.put("cabinet_10", (0.0, 2.5 - DEPTH / 2 - gap_m, HEIGHT / 2), yaw=yaw)
     scene = room.scene(camera=looking_north())
-    return standing_walls(scene, scene.object(cabinet), noise, fitted_weights().walls)
+    return standing_walls(scene, scene.object(cabinet), noise, support_weights().walls)
 
 
 @pytest.mark.parametrize("noise", [MEASURED, REASONED])
@@ -182,7 +182,7 @@ def test_a_cabinet_away_from_a_wall_or_aslant_to_it_stands_free(room: Room, gap_
 
 
 def test_weights_name_every_term() -> None:
-    assert all(set(weights) == set(STANDING_TERMS) for weights in fitted_weights().walls.values())
+    assert all(set(weights) == set(STANDING_TERMS) for weights in support_weights().walls.values())
 
 
 def test_a_wall_that_ends_before_an_object_has_no_relation_to_it(room: Room) -> None:

@@ -223,7 +223,7 @@ def test_the_running_job_is_in_view_in_every_tab_with_what_it_found(editor: Edit
 
     def work(progress: Progress) -> None:
         progress.report(0.3, "outlining objects")
-        progress.part(0.2, 0.3).found("9 objects")
+        progress.part(0.2, 0.3).report_finding("9 objects")
         while not go_on.wait(0.02):
             progress.report(0.5, "finding shapes")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from diorama_core.export.physics import enclosed_m3, friction_of, inertia_of, plausible_mass_kg, substance_of
+from diorama_core.export.physics import friction_of, inertia_of, plausible_mass_kg, substance_of, surface_volume_m3
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import Shape
 from diorama_core.render.appearance import Material, Surface, shape_surfaces
@@ -42,8 +42,8 @@ def test_a_thick_block_of_wood_is_hollow() -> None:
 def test_an_open_sheet_encloses_nothing() -> None:
     cube = box((1, 1, 1))
     opened = trimesh.Trimesh(cube.vertices, cube.faces[2:])
-    assert enclosed_m3(surface(cube, "oak")) == pytest.approx(1.0)
-    assert enclosed_m3(surface(opened, "oak")) == 0.0
+    assert surface_volume_m3(surface(cube, "oak")) == pytest.approx(1.0)
+    assert surface_volume_m3(surface(opened, "oak")) == 0.0
 
 
 def test_the_heavy_part_draws_the_centre_of_mass() -> None:

@@ -17,7 +17,7 @@ from diorama_core.export import export_scene
 from diorama_core.importing.foreign import scene_of_parts, take_missing_shapes
 from diorama_core.importing.forms import SceneParts, open_form, read_mark
 from diorama_core.importing.opening import open_marked
-from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
+from diorama_core.library.ingest.known_shapes import KnownShapes, load_known_shapes
 from diorama_core.library.store import CombinedLibrary, StoredLibrary
 from diorama_core.progress import Progress
 from diorama_core.scene.support import check_scene
@@ -28,7 +28,7 @@ from tests.primitives import furnished_room
 
 @pytest.fixture(scope="module")
 def known(tmp_path_factory: pytest.TempPathFactory) -> KnownShapes:
-    return known_shapes(tmp_path_factory.mktemp("known"), library=LIBRARY)
+    return load_known_shapes(tmp_path_factory.mktemp("known"), library=LIBRARY)
 
 
 def opened(path: Path, known: KnownShapes, folder: Path):

@@ -10,7 +10,7 @@ from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import InputError
 from diorama_core.layout.published.staged import StageSchedule
 from diorama_core.layout.recipes import NAMES, recipe
-from diorama_core.layout.settings import AS_IT_IS, DEFAULT_COSTS, PUBLISHED_COSTS, Weights, weighted_costs
+from diorama_core.layout.settings import AS_IT_IS, DEFAULT_COSTS, PUBLISHED_COSTS, Weights, cost_names
 from diorama_core.progress import Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Camera, Intrinsics, Scene
@@ -53,7 +53,7 @@ def test_weights_of_one_are_the_recipe_as_it_is(name: str) -> None:
     [("paper", c) for c in PUBLISHED_COSTS] + [("all-in-one", "place"), *(("feasible", c) for c in DEFAULT_COSTS)],
 )
 def test_every_weight_makes_a_difference_to_its_recipe(name: str, cost: str) -> None:
-    assert cost in weighted_costs(name)
+    assert cost in cost_names(name)
     plain = as_it_is(name)[0]
     changed, _ = brief(name, replace(AS_IT_IS, **{cost: 0.0})).optimise(observed(), Progress())
     far = [np.abs(o.pose.matrix - plain.object(o.id).pose.matrix).max() for o in changed.objects]

@@ -7,9 +7,9 @@ from diorama_core.artefacts import LayoutReport
 from diorama_core.layout.what_got_worse import (
     MAX_RESIZE,
     describe_worse,
+    find_excessive_resizes,
     new_problems,
-    resized_in_words,
-    resized_too_much,
+    resizes_in_words,
     with_believed_sizes,
 )
 from diorama_core.scene import edits
@@ -60,16 +60,16 @@ def _sized(factor: float) -> Scene:
 @pytest.mark.parametrize("factor", [0.35, 3.0])
 def test_sizes_that_left_what_is_believed_are_a_problem_and_said_in_words(factor: float) -> None:
     scene = furnished_scene()
-    assert resized_too_much(scene, _sized(factor)) == {"table_1": ("was resized",)}
+    assert find_excessive_resizes(scene, _sized(factor)) == {"table_1": ("was resized",)}
     size = 100 * factor * np.array([140.0, 80.0, 74.0]) / 100
     said = f"resized: dining table, 140 x 80 x 74 to {size[0]:.0f} x {size[1]:.0f} x {size[2]:.0f} cm"
-    assert resized_in_words(scene, _sized(factor)) == (said,)
+    assert resizes_in_words(scene, _sized(factor)) == (said,)
 
 
 def test_small_changes_of_size_are_no_problem() -> None:
-    assert resized_too_much(furnished_scene(), _sized(1.1)) == {}
-    assert len(resized_in_words(furnished_scene(), _sized(1.1))) == 1
-    assert resized_in_words(furnished_scene(), _sized(1.01)) == ()
+    assert find_excessive_resizes(furnished_scene(), _sized(1.1)) == {}
+    assert len(resizes_in_words(furnished_scene(), _sized(1.1))) == 1
+    assert resizes_in_words(furnished_scene(), _sized(1.01)) == ()
 
 
 @pytest.mark.parametrize("factor", [0.35, 3.0])

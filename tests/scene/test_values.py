@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from diorama_core.scene.values import ArrayValue, frozen_array
+from diorama_core.scene.values import ArrayValue, read_only_array
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,21 +34,21 @@ def test_values_are_equal_by_content_and_hash_alike() -> None:
 
 def test_frozen_arrays_are_read_only_copies() -> None:
     given = np.zeros((2, 3))
-    made = frozen_array(given, (-1, 3))
+    made = read_only_array(given, (-1, 3))
     given[0, 0] = 5.0
     assert made[0, 0] == 0.0
     with pytest.raises(ValueError, match="read-only"):
         made[0, 0] = 1.0
-    assert frozen_array([1, 2, 3], (3,)).dtype == np.float64
+    assert read_only_array([1, 2, 3], (3,)).dtype == np.float64
 
 
 @pytest.mark.parametrize("value", [np.zeros((2, 2)), np.zeros(3), np.zeros((1, 2, 3)), 4.0])
 def test_another_shape_is_refused(value) -> None:
     with pytest.raises(ValueError, match="expected an array of shape"):
-        frozen_array(value, (-1, 3))
+        read_only_array(value, (-1, 3))
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 10**400])
 def test_numbers_must_be_finite(bad) -> None:
     with pytest.raises(ValueError, match="finite"):
-        frozen_array([0.0, bad, 1.0], (3,))
+        read_only_array([0.0, bad, 1.0], (3,))

@@ -97,7 +97,7 @@ def heading_cosine(room: FacingRoom, i: int, direction: Float[np.ndarray, "2"]) 
     return np.asarray(room.objects[i].directions @ direction)
 
 
-def shown(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Agreement | None]:
+def camera_agreement(kinds: frozenset[str] | None) -> Callable[[FacingRoom, int], Agreement | None]:
     """Photos show fronts of some kinds: away from the camera is unlikely, sideways hardly less so than toward it."""
 
     def one(room: FacingRoom, i: int) -> Agreement | None:
@@ -233,11 +233,11 @@ def as_bed(room: FacingRoom, i: int, j: int) -> PairAgreement | None:
 
 
 TERMS: tuple[Term, ...] = (
-    Term("shown_seats", "photos show fronts of seats", shown(SEATS)),
-    Term("shown_sofas", "photos show fronts of sofas and armchairs", shown(LOUNGE)),
-    Term("shown_storage", "photos show fronts of cupboards", shown(STORAGE)),
-    Term("shown_screens", "screens face who looks at them", shown(SCREENS)),
-    Term("shown_others", "photos show fronts", shown(None)),
+    Term("shown_seats", "photos show fronts of seats", camera_agreement(SEATS)),
+    Term("shown_sofas", "photos show fronts of sofas and armchairs", camera_agreement(LOUNGE)),
+    Term("shown_storage", "photos show fronts of cupboards", camera_agreement(STORAGE)),
+    Term("shown_screens", "screens face who looks at them", camera_agreement(SCREENS)),
+    Term("shown_others", "photos show fronts", camera_agreement(None)),
     Term("at_table", "seats face the table that they are drawn up to", at_table),
     Term("at_user", "screens face the keyboard or seat that uses them", at_user),
     Term("back_at_wall", "cupboards and beds turn their backs to a wall", back_at_wall(STORAGE | BEDS)),

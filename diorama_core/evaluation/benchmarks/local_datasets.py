@@ -28,7 +28,7 @@ from diorama_core.evaluation.metrics.scene import (
     mean_mask_iou,
     out_of_bounds_share,
     structure_of,
-    supported_share,
+    support_share,
 )
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
@@ -181,7 +181,7 @@ def _measure(case: LocalCase, library: ShapeLibrary, progress: Progress) -> Loca
             _relation(case, scene, by_mask),
             () if case.frame is None else alignments(models, scene, case.frame),
             structure_of(scene, library)["structure"],
-            supported_share(scene, library),
+            support_share(scene, library),
             out_of_bounds_share(scene),
             1000 * mesh_overlap_m3(scene, library) if scene.objects else None,
             spent,

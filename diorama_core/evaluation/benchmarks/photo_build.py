@@ -222,7 +222,7 @@ def build_photo(task: PhotoTask, library: ShapeLibrary, progress: Progress = SIL
     begun = time.process_time()
     key = task.key()
     try:
-        case = annotated_inputs(task)
+        case = read_annotated_inputs(task)
         stages = with_settings(embedded_stages(case.inputs, library), task.settings)
         built = build_scene(case.inputs, library, stages=stages, cache=task.cache, progress=progress)
         spent = time.process_time() - begun
@@ -242,8 +242,8 @@ def build_photo(task: PhotoTask, library: ShapeLibrary, progress: Progress = SIL
         )
 
 
-def annotated_inputs(task: PhotoTask) -> AnnotatedInputs:
-    """What the build is given, with the annotation in the same pixels.
+def read_annotated_inputs(task: PhotoTask) -> AnnotatedInputs:
+    """Read what the build is given, with the annotation in the same pixels.
 
     Raises:
         InputError: the picture cannot be read, or is not of the annotated size.

@@ -119,7 +119,7 @@ def folds_table(folds: Sequence[Results], *, fitted: bool) -> Table:
     return Table("Folds of photos", columns, rows, f"{note} Spread: standard deviation over folds.")
 
 
-def perturbed_tables(plain: Results, perturbed: Mapping[str, Results]) -> tuple[Table, Table]:
+def perturbation_tables(plain: Results, perturbed: Mapping[str, Results]) -> tuple[Table, Table]:
     """The figures under each perturbation, and their differences from the same objects in the photos as they are."""
     columns = (_OBJECTS, *(figure.column for figure in OF_OBJECTS))
     of_photo = {r.photo: r for r in plain}

@@ -25,7 +25,7 @@ from diorama_core.evaluation.benchmarks.photo_tables import (
     form_table,
     fronts_table,
     overall_table,
-    perturbed_tables,
+    perturbation_tables,
 )
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.io.bounded import read_json
@@ -90,7 +90,7 @@ class PhotosBench:
         names = dict.fromkeys(r.perturbation for r in self.results if r.perturbation)
         if names:
             of = {name: [r for r in self.results if r.perturbation == name] for name in names}
-            tables += perturbed_tables(self.plain, of)
+            tables += perturbation_tables(self.plain, of)
         return tuple(tables)
 
     def to_json(self) -> dict[str, object]:

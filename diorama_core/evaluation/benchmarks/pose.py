@@ -153,7 +153,7 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
         progress: reports and cancellation.
     """
     tally = _Tally()
-    solvers = SideBySide.embedded(library)
+    solvers = SideBySide.create_embedded(library)
     cases = recipe(scenes, 1, seed)
     for number, (case, view) in enumerate(make_views(cases, library, [])):
         step = progress.part(number / len(cases), (number + 1) / len(cases))

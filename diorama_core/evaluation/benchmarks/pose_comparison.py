@@ -199,8 +199,8 @@ class SideBySide:
     baselines: CorrespondencePose = field(repr=False)
 
     @classmethod
-    def embedded(cls, library: ShapeLibrary) -> SideBySide:
-        """The solvers that need no networks."""
+    def create_embedded(cls, library: ShapeLibrary) -> SideBySide:
+        """Create the solvers that need no networks."""
         return cls(library, RenderAndCompare(library), CorrespondencePose(library, grid=HALF_GRID))
 
     def retrieve(self, seen: SeenInput, keep: int) -> tuple[RankedShapes, ...]:

@@ -63,7 +63,7 @@ class RetrievalResult:
     """Whether the first shape is of the true category, or of the same broad one; the whole library offered."""
     unseen_kind: bool
     alone: tuple[tuple[str, float, float], ...] = ()
-    """(one of `ALONE` or `published_stages`, best of five of the whole library, and of the unseen shapes)."""
+    """(one of `ALONE` or `embedding_stages`, best of five of the whole library, and of the unseen shapes)."""
 
 
 @dataclass(frozen=True)
@@ -101,13 +101,13 @@ def run(
         scenes: Number of rooms.
         seed: Of the rooms.
         progress: Where it is reported.
-        embeddings: By their names in the publication's table, each gets its rows; see `published_stages`.
+        embeddings: By their names in the publication's table, each gets its rows; see `embedding_stages`.
     """
     tested = split_library(library, "test")
     unoffered = split_library(library, "train", "validation")
     everything, others = HierarchicalRetrieval(library), HierarchicalRetrieval(unoffered)
     rows = {name: (partial(_alone, name, library), partial(_alone, name, unoffered)) for name in ALONE}
-    for name, stage in published_stages(embeddings or {}).items():
+    for name, stage in embedding_stages(embeddings or {}).items():
         rows[name] = (partial(_ranks, stage(library)), partial(_ranks, stage(unoffered)))
     results: list[RetrievalResult] = []
     cases = recipe(scenes, 1, seed)
@@ -126,7 +126,7 @@ def run(
     return RetrievalBench(seed, tuple(results))
 
 
-def published_stages(embeddings: Mapping[str, JointEmbedding]) -> dict[str, Callable[[ShapeLibrary], RetrievalStage]]:
+def embedding_stages(embeddings: Mapping[str, JointEmbedding]) -> dict[str, Callable[[ShapeLibrary], RetrievalStage]]:
     """The publication's way with each embedding, and DuoduoCLIP's by words and by picture alone, by row."""
 
     def stage(embedding: JointEmbedding, by: By) -> Callable[[ShapeLibrary], RetrievalStage]:

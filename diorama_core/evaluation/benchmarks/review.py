@@ -15,7 +15,7 @@ import numpy as np
 
 from diorama_core.errors import EditRefused
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedObject
-from diorama_core.evaluation.benchmarks.photo_build import PhotoTask, annotated_inputs
+from diorama_core.evaluation.benchmarks.photo_build import PhotoTask, read_annotated_inputs
 from diorama_core.evaluation.metrics.annotated import carrier_of, front_error_of
 from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.library.record import ShapeLibrary, record_of
@@ -137,7 +137,7 @@ def build(task: PhotoTask, library: ShapeLibrary, progress: Progress = SILENT) -
         DioramaError: the photo cannot be built.
         Cancelled: on request.
     """
-    case = annotated_inputs(task)
+    case = read_annotated_inputs(task)
     scene = build_scene(case.inputs, library, cache=task.cache, progress=progress).scene
     known = {o.id: o.mask_id - 1 for o in scene.objects if o.mask_id is not None}
     return Reviewed(scene, {name: case.annotation.objects[k] for name, k in known.items()}, known, library)

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import DetectedObject, ObjectGeometry
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedObject
-from diorama_core.evaluation.metrics.colour import perceived_difference
+from diorama_core.evaluation.metrics.colour import perceptual_difference
 from diorama_core.geometry.projection import box_iou, visible_bounds
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.form import compare, form_at
@@ -145,7 +145,7 @@ def front_deg(item: SceneObject, camera: Camera) -> float:
 def _colour_difference(annotated: AnnotatedObject, shown: Float[np.ndarray, "3"] | None) -> float | None:
     if annotated.colour is None or shown is None:
         return None
-    return float(perceived_difference(np.array(annotated.colour) / 255.0, shown))
+    return float(perceptual_difference(np.array(annotated.colour) / 255.0, shown))
 
 
 def front_error_of(annotated: AnnotatedObject, item: SceneObject, camera: Camera | None, fold: int) -> float | None:

@@ -101,8 +101,8 @@ def architecture_scores(
         depth_rmse_m=depth_rmse(a.depth_m, b.depth_m),
         cdb_m=centred_chamfer(plane_points(aligned), plane_points(true)),
         cdb_seen_m=centred_chamfer(
-            _move(seen_points(estimated, found_camera or camera), found_camera or camera, camera),
-            seen_points(true, camera),
+            _move(visible_points(estimated, found_camera or camera), found_camera or camera, camera),
+            visible_points(true, camera),
         ),
         recall=planes.recall,
         precision=planes.precision,
@@ -196,7 +196,7 @@ def plane_points(planes: tuple[Plane, ...], spacing_m: float = SAMPLE_M) -> Floa
     return np.concatenate(points)
 
 
-def seen_points(planes: tuple[Plane, ...], camera: Camera) -> Float[np.ndarray, "n 3"]:
+def visible_points(planes: tuple[Plane, ...], camera: Camera) -> Float[np.ndarray, "n 3"]:
     """Those of the points spread over planes that are in the picture and have no other plane before them."""
     points = plane_points(planes, SAMPLE_M)
     local, k = camera.to_camera(points), camera.intrinsics

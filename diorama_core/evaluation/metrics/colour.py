@@ -12,7 +12,7 @@ from diorama_core.geometry.vectors import dot, unit
 from diorama_core.io.srgb import linear_to_srgb, luminance
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.gloss import gloss_share
-from diorama_core.render.lighting import Lighting, unshadowed
+from diorama_core.render.lighting import Lighting, irradiance_without_shadows
 from diorama_core.render.raycast import PinholeView, pixel_centres
 from diorama_core.render.world import Places, scene_world
 from diorama_core.scene.types import Camera, RoomLight, Scene
@@ -61,7 +61,7 @@ def lab_of(srgb: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
     return np.asarray(cv2.cvtColor(flat, cv2.COLOR_RGB2Lab).reshape(np.shape(srgb)), dtype=np.float64)
 
 
-def perceived_difference(
+def perceptual_difference(
     srgb_1: Float[np.ndarray, "*n 3"], srgb_2: Float[np.ndarray, "*n 3"]
 ) -> Float[np.ndarray, "*n"]:
     """CIEDE2000 of sRGB colours from 0 to 1, with lightness at half weight."""
@@ -84,7 +84,8 @@ def main_light(light: Lighting, points: Float[np.ndarray, "n 3"]) -> Float[np.nd
     across = np.sqrt(1 - h**2)
     normals = np.stack([across * np.cos(t), across * np.sin(t), h], axis=1).astype(np.float32)
     fallen = [
-        luminance(unshadowed(np.broadcast_to(p, normals.shape).astype(np.float32), normals, light)) for p in points
+        luminance(irradiance_without_shadows(np.broadcast_to(p, normals.shape).astype(np.float32), normals, light))
+        for p in points
     ]
     design = np.column_stack([np.ones(len(normals)), normals])
     even, *sloped = np.linalg.lstsq(design, np.mean(fallen, axis=0), rcond=None)[0]

@@ -162,7 +162,7 @@ def _same_way(true_a: Placed, true_b: Placed, a: Placed, b: Placed) -> bool:
 
 def _size_ratio(true_a: Placed, true_b: Placed, a: Placed, b: Placed) -> Float[np.ndarray, "3"]:
     """The found relative extents of a against b over the true ones, along each axis."""
-    return (_matched_size(true_a, a) / _matched_size(true_b, b)) / (true_a.size_m / true_b.size_m)
+    return (_align_size(true_a, a) / _align_size(true_b, b)) / (true_a.size_m / true_b.size_m)
 
 
 def _same_size(ratio: Float[np.ndarray, "3"], *, every_axis: bool) -> bool:
@@ -181,10 +181,10 @@ def _own_errors(true: Placed, placed: Placed) -> tuple[float, float]:
     """Angle up to symmetry, and mean relative error of the extents."""
     turned = placed.R @ symmetry_turns(true.symmetry)
     angle = float(rotation_angle(turned, true.R).min())
-    return angle, float(np.abs(_matched_size(true, placed) / true.size_m - 1.0).mean())
+    return angle, float(np.abs(_align_size(true, placed) / true.size_m - 1.0).mean())
 
 
-def _matched_size(true: Placed, placed: Placed) -> Float[np.ndarray, "3"]:
+def _align_size(true: Placed, placed: Placed) -> Float[np.ndarray, "3"]:
     """The found extents along the true object's axes: where symmetry allows a quarter turn, width may be depth."""
     if true.symmetry % 4:
         return placed.size_m

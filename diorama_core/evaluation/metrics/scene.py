@@ -148,8 +148,8 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
         structure=layout["structure"],
         box_overlap_cm=100 * layout["box_overlap_m"],
         mesh_overlap_l=1000 * mesh_overlap_m3(scene, library),
-        supported=supported_share(scene, library),
-        truly_supported=truly_supported_share(view, scene, match, library),
+        supported=support_share(scene, library),
+        truly_supported=true_support_share(view, scene, match, library),
         out_of_bounds=out_of_bounds_share(scene),
         stable=None if moved_by is None else stable_share(moved_by),
         drift_cm=None if moved_by is None else 100 * float(np.mean([d for d, _ in moved_by.values()])),
@@ -216,7 +216,7 @@ def relation_accuracy(view: TruthView, scene: Scene, match: list[SceneObject | N
     return right / len(edges) if edges else 1.0
 
 
-def supported_share(scene: Scene, library: ShapeLibrary) -> float:
+def support_share(scene: Scene, library: ShapeLibrary) -> float:
     """SceneEval's support: share of objects whose lowest point (or back) is within 1 cm of what the graph says."""
     good = 0
     for item in scene.objects:
@@ -226,9 +226,7 @@ def supported_share(scene: Scene, library: ShapeLibrary) -> float:
     return good / max(len(scene.objects), 1)
 
 
-def truly_supported_share(
-    view: TruthView, scene: Scene, match: list[SceneObject | None], library: ShapeLibrary
-) -> float:
+def true_support_share(view: TruthView, scene: Scene, match: list[SceneObject | None], library: ShapeLibrary) -> float:
     """Share of the true support edges whose child touches (within 1 cm) what stands for its true supporter.
 
     For a plane any plane of the same role stands; whatever the scene's own graph says does not count.

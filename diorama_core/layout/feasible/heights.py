@@ -45,7 +45,7 @@ def joint_heights(problem: Problem, observations: PhotoObservations) -> tuple[Pr
         return problem, observations
     height = problem.shape_size[:, 2] * problem.scale[:, 2]
     foot = problem.p[:, 2] - height / 2
-    x = _solved(problem, observations, chains, height, foot)
+    x = _solve_heights(problem, observations, chains, height, foot)
     members = np.array(chains.members)
     heights = x[: len(members)]
     feet = chains.constant[members] + chains.rows[members] @ x
@@ -72,12 +72,12 @@ def _chains(problem: Problem, observations: PhotoObservations) -> _Chains:
         if i in own_foot:
             rows[i, own_foot[i]] = 1.0
             continue
-        j, place = int(problem.parent[i]), _observed_place(problem, i)
+        j, place = int(problem.parent[i]), _find_observed_place(problem, i)
         if j in column:
             rows[i], constant[i] = rows[j], constant[j]
             rows[i, column[j]] += place.level / problem.shape_size[j, 2] + 0.5
         else:
-            constant[i] = place.level if j < 0 else _observed_level(problem, i)
+            constant[i] = place.level if j < 0 else _find_observed_level(problem, i)
     return _Chains(tuple(members), rows, constant)
 
 
@@ -91,7 +91,7 @@ def _is_sought(problem: Problem, observations: PhotoObservations, i: int) -> boo
     return upright and float(surface.normal[2]) > problem.settings.upward
 
 
-def _observed_place(problem: Problem, i: int) -> RestingSurface:
+def _find_observed_place(problem: Problem, i: int) -> RestingSurface:
     """The place on its supporter that agrees best with where an object was observed, as `problem.levels` has it."""
     j, size = int(problem.parent[i]), problem.shape_size[i] * problem.scale[i]
     if j < 0 or len(problem.levels[i]) < 2:
@@ -105,13 +105,13 @@ def _observed_place(problem: Problem, i: int) -> RestingSurface:
     )
 
 
-def _observed_level(problem: Problem, i: int) -> float:
+def _find_observed_level(problem: Problem, i: int) -> float:
     """Height of the place of an object on its supporter as observed."""
     j = int(problem.parent[i])
-    return _observed_place(problem, i).transform(problem.R[j], problem.p[j], problem.scale[j]).level
+    return _find_observed_place(problem, i).transform(problem.R[j], problem.p[j], problem.scale[j]).level
 
 
-def _solved(
+def _solve_heights(
     problem: Problem,
     observations: PhotoObservations,
     chains: _Chains,
@@ -128,7 +128,7 @@ def _solved(
     lines, wanted = [], []
     for k, i in enumerate(chains.members):
         is_unknown = np.arange(unknowns) == k
-        fits = int(problem.parent[i]) < 0 or abs(_observed_level(problem, i) - foot[i]) <= problem.settings.load_m
+        fits = int(problem.parent[i]) < 0 or abs(_find_observed_level(problem, i) - foot[i]) <= problem.settings.load_m
         hidden = [foot_hidden[i], observations.hidden[i, 1]]
         weight = np.where(hidden, problem.settings.hidden, 1.0) / _apparent_height_m(observations, i)
         if fits:

@@ -8,7 +8,7 @@ import numpy as np
 
 from diorama_core.arrangement.surfaces import RestingSurface, object_surfaces, overhang_m, plane_surface
 from diorama_core.layout.feasible.relocate import relocate
-from diorama_core.layout.feasible.separate import base, build_program, relaxed, separate
+from diorama_core.layout.feasible.separate import base, build_program, relax, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.library.record import ShapeLibrary
@@ -53,12 +53,12 @@ class DragSolver:
         if not self.problem.free[i]:
             return self.scene
         problem, edge = self._problem_at(pose)
-        structure = self._settled(problem)
+        structure = self._settle(problem)
         weight = np.tile(np.eye(2), (problem.count, 1, 1))
         program = build_program(problem, structure, weight)
         separation = separate(program, rounds=self.rounds, check=lambda y, depth: None)
         if separation.stuck:
-            separation = relaxed(program, relocate(program, base(program)))
+            separation = relax(program, relocate(program, base(program)))
         p = structure.p + program.moves(separation.y)
         moved = edits.place(self.scene, problem.poses(structure.R, p, structure.scale))
         return moved if edge is None else edits.attach(moved, edge)
@@ -75,7 +75,7 @@ class DragSolver:
         moved = replace(old, R=R, p=p, scale=scale, adheres=tuple(a for a in old.adheres if a[0] not in old.rides(i)))
         return self._put_down(moved)
 
-    def _settled(self, problem: Problem) -> Structure:
+    def _settle(self, problem: Problem) -> Structure:
         """The object on its support, its load carried along as it lies; put anew only where the object was resized."""
         i, load = self.index, self.problem.rides(self.index)[1:]
         structure = exact_structure(problem, only=(i,))

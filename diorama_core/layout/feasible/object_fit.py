@@ -53,7 +53,7 @@ class ObjectFit:
         """Where the object's centre is."""
         return self.anchor + self.basis @ x[:2] - self.R @ (self.anchor_local * self.scale * np.exp(x[2:]))
 
-    def linearised(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "r 5"], Float[np.ndarray, " r"]] | None:
+    def linearise(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "r 5"], Float[np.ndarray, " r"]] | None:
         """Derivatives and residuals in metres: four outline bounds, tracked points, distance, and what holds
         place, shape and size.
 
@@ -66,8 +66,8 @@ class ObjectFit:
         if sight is None:
             return None
         distance = self._surface(x) if self.surface_measured else self._centre(x)
-        clamped = self._clamped()
-        fixed_rows, gaps = self._held(x)
+        clamped = self._prior_rows()
+        fixed_rows, gaps = self._rows_of_loads(x)
         rows = [outline[0], sight[0], distance[0], fixed_rows, clamped]
         return np.vstack(rows), np.concatenate([outline[1], sight[1], distance[1], gaps, clamped @ x])
 
@@ -93,7 +93,9 @@ class ObjectFit:
         to_metres = pixel @ self.camera.T_camera_world[:3, :3] * self.metres
         return np.column_stack([to_metres @ self.basis, (to_metres @ self.R) * arms[extreme]]), outline
 
-    def _placed(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "t 3"], Float[np.ndarray, "t 3"]]:
+    def _place_tracked_points(
+        self, x: Float[np.ndarray, "5"]
+    ) -> tuple[Float[np.ndarray, "t 3"], Float[np.ndarray, "t 3"]]:
         """Arms of the tracked points at their sizes, and where they are before the camera."""
         arms = self.tracked_arms * (self.scale * np.exp(x[2:]))
         return arms, self.camera.to_camera(self.anchor + self.basis @ x[:2] + arms @ self.R.T)
@@ -108,14 +110,14 @@ class ObjectFit:
 
     def _surface(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "t 5"], Float[np.ndarray, " t"]]:
         """How far the surface that was seen leaves its measured distance."""
-        arms, placed = self._placed(x)
+        arms, placed = self._place_tracked_points(x)
         axis = self.depth_weight / np.sqrt(len(arms)) * self.camera.T_camera_world[2, :3]
         rows = np.column_stack([np.tile(axis @ self.basis, (len(arms), 1)), (axis @ self.R) * arms])
         return rows, self.depth_weight / np.sqrt(len(arms)) * (placed[:, 2] - self.tracked.depth_m)
 
     def _sight(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "r 5"], Float[np.ndarray, " r"]] | None:
         """How the tracked points leave where they were seen, in metres at their distance."""
-        arms, placed = self._placed(x)
+        arms, placed = self._place_tracked_points(x)
         if placed[:, 2].min() < self.settings.nearest_m:
             return None
         k = self.camera.intrinsics
@@ -128,7 +130,7 @@ class ObjectFit:
         weight = self.settings.tracked / np.sqrt(len(arms))
         return weight * J, weight * residual.ravel()
 
-    def _held(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "m 5"], Float[np.ndarray, " m"]]:
+    def _rows_of_loads(self, x: Float[np.ndarray, "5"]) -> tuple[Float[np.ndarray, "m 5"], Float[np.ndarray, " m"]]:
         """How the places of an upright object miss what was observed on them."""
         arm = (self.loads[:, 0] - self.anchor_local[2]) * self.scale[2] * np.exp(x[4])
         rows = np.zeros((len(arm), 5))
@@ -137,7 +139,7 @@ class ObjectFit:
         height = self.anchor[2] + self.basis[2] @ x[:2] + arm
         return self.settings.load * rows, self.settings.load * (height - self.loads[:, 1])
 
-    def _clamped(self) -> Float[np.ndarray, "6 5"]:
+    def _prior_rows(self) -> Float[np.ndarray, "6 5"]:
         clamped = np.zeros((6, 5))
         clamped[0, 0] = clamped[1, 1] = self.settings.keep_place
         # Measured shares of a thin extent are as sure as those of a long one; in a photo metres are.
@@ -147,7 +149,9 @@ class ObjectFit:
         return clamped
 
 
-def bounded_step(J: np.ndarray, residual: np.ndarray, low: np.ndarray, high: np.ndarray) -> Float[np.ndarray, "5"]:
+def solve_bounded_step(
+    J: np.ndarray, residual: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> Float[np.ndarray, "5"]:
     """The least-squares step whose sizes stay within limits: sizes that reach one are held there, and the rest solved
     again.
 

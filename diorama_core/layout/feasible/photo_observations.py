@@ -16,12 +16,12 @@ from jaxtyping import Bool, Float, Int
 from diorama_core.arrangement.surfaces import box_misfit
 from diorama_core.artefacts import PhotoDisagreement
 from diorama_core.geometry.projection import box_iou
-from diorama_core.layout.feasible.object_fit import ObjectFit, bounded_step
+from diorama_core.layout.feasible.object_fit import ObjectFit, solve_bounded_step
 from diorama_core.layout.feasible.visible_points import (
     TrackedPoints,
     VisiblePoints,
-    tracked_points,
-    turned_points,
+    select_tracked_points,
+    turn_points,
 )
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.settings import LayoutSettings
@@ -60,7 +60,7 @@ class PhotoObservations:
     """Objects at measured places that are still where the photo shows them; a person may have put others anywhere."""
     settings: LayoutSettings
 
-    def limited(self, scale: Float[np.ndarray, "n 3"]) -> PhotoObservations:
+    def limit_sizes(self, scale: Float[np.ndarray, "n 3"]) -> PhotoObservations:
         """These observations with nothing larger than it is now where it has been made smaller."""
         smaller = scale < 0.999 * self.most / self.settings.max_stretch
         return replace(self, most=np.where(smaller, scale, self.most), least=np.minimum(self.least, scale))
@@ -85,7 +85,7 @@ class PhotoObservations:
         least = np.where(extents, np.maximum(self.least, scale), self.least)
         return replace(self, least=least, most=np.maximum(self.most, least))
 
-    def replaced(self, members: Int[np.ndarray, " m"], other: PhotoObservations) -> PhotoObservations:
+    def replace_objects(self, members: Int[np.ndarray, " m"], other: PhotoObservations) -> PhotoObservations:
         """These observations with some objects as others have them, but for what decided their heights."""
 
         def rows(values: np.ndarray, theirs: np.ndarray) -> np.ndarray:
@@ -107,7 +107,7 @@ class PhotoObservations:
             contradicted=rows(self.contradicted, other.contradicted),
         )
 
-    def fitted(
+    def fit_centre_and_scale(
         self,
         i: int,
         R: Float[np.ndarray, "3 3"],
@@ -135,10 +135,10 @@ class PhotoObservations:
         low, high = np.log(grown * self.least[i] / scale), np.log(grown * self.most[i] / scale)
         x = np.zeros(5)
         for _ in range(self.settings.fit_steps):
-            system = fit.linearised(x)
+            system = fit.linearise(x)
             if system is None:
                 return p, scale
-            x = x + bounded_step(*system, low - x[2:], high - x[2:])
+            x = x + solve_bounded_step(*system, low - x[2:], high - x[2:])
         return fit.centre(x), fit.scale * np.exp(x[2:])
 
     def fit(
@@ -151,7 +151,7 @@ class PhotoObservations:
         pinned: np.ndarray,
         grown: float = 1.0,
     ) -> ObjectFit:
-        """The least-squares problem of one object; arguments as in `fitted`.
+        """The least-squares problem of one object; arguments as in `fit_centre_and_scale`.
 
         Args:
             i: index of the object.
@@ -169,7 +169,7 @@ class PhotoObservations:
             camera=self.camera,
             bounds_px=self.bounds_px[i],
             hidden=self.hidden[i],
-            loads=self._grown_loads(i, grown),
+            loads=self._scale_loads(i, grown),
             observed=observed,
             depth_weight=self.depth_weight,
             R=R,
@@ -177,7 +177,7 @@ class PhotoObservations:
             anchor_local=local,
             arms=self.points[i] - local,
             tracked=tracked,
-            tracked_arms=turned_points(tracked.points, self.size[i], self.R[i], R) - local,
+            tracked_arms=turn_points(tracked.points, self.size[i], self.R[i], R) - local,
             surface_measured=bool(self.measured[i]) and tracked.seen,
             scale=scale,
             basis=basis,
@@ -186,7 +186,7 @@ class PhotoObservations:
             settings=self.settings,
         )
 
-    def _grown_loads(self, i: int, grown: float) -> Float[np.ndarray, "m 2"]:
+    def _scale_loads(self, i: int, grown: float) -> Float[np.ndarray, "m 2"]:
         level, foot = self.loads[i].T
         eye = float(self.camera.position[2])
         return np.column_stack([level, eye + grown * (foot - eye)])
@@ -213,8 +213,8 @@ def photo_observations(
         visible: points of the objects that are seen.
     """
     points = _outline_points(problem)
-    posed = _posed_bounds_px(problem, camera)
-    bounds, hidden = _pictured(problem, camera, posed)
+    posed = _project_all_bounds_px(problem, camera)
+    bounds, hidden = _select_bounds_px(problem, camera, posed)
     if measured or not boxes:  # masks and depth, to which shapes were fitted, say more than boxes
         bounds = posed
     return PhotoObservations(
@@ -228,7 +228,7 @@ def photo_observations(
         loads=tuple(_loads(problem, i) for i in range(problem.count)),
         size=problem.shape_size,
         points=points,
-        tracked=tracked_points(problem, camera, posed, bounds, visible),
+        tracked=select_tracked_points(problem, camera, posed, bounds, visible),
         R=problem.R,
         contradicted=(np.abs(posed - bounds) > 0.0).any(axis=1),
         measured=_agrees(problem, camera) & measured,
@@ -261,9 +261,9 @@ def _outline_points_of(problem: Problem, i: int) -> Float[np.ndarray, "_ 3"]:
     return np.unique(packed.vertices[packed.owner == i].reshape(-1, 3), axis=0)
 
 
-def _posed_bounds_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4"]:
+def _project_all_bounds_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4"]:
     """Bounds of each posed shape in the picture, not cut at its border; NaN for those behind the camera."""
-    bounds_px = [posed_bounds_px(problem, camera, i, problem.p[i], problem.scale[i]) for i in range(problem.count)]
+    bounds_px = [project_bounds_px(problem, camera, i, problem.p[i], problem.scale[i]) for i in range(problem.count)]
     return np.array(bounds_px).reshape(-1, 4)
 
 
@@ -278,7 +278,7 @@ def _bounds_in_picture_px(problem: Problem, camera: Camera) -> Float[np.ndarray,
     return bounds
 
 
-def posed_bounds_px(
+def project_bounds_px(
     problem: Problem, camera: Camera, i: int, p: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]
 ) -> Float[np.ndarray, "4"]:
     """Bounds in the picture of one object at another place or size, not cut at its border; NaN behind the camera.
@@ -297,7 +297,7 @@ def posed_bounds_px(
     return np.array([*flat.min(axis=0), *flat.max(axis=0)])
 
 
-def _pictured(
+def _select_bounds_px(
     problem: Problem, camera: Camera, posed: Float[np.ndarray, "n 4"]
 ) -> tuple[Float[np.ndarray, "n 4"], Bool[np.ndarray, "n 4"]]:
     """The bounds of every object in the picture, and which of them are least bounds because the rest is hidden.
@@ -307,7 +307,7 @@ def _pictured(
     """
     boxes = problem.box_px
     agrees = _agrees(problem, camera)
-    hidden = _hidden_sides(problem, camera) & agrees[:, None]
+    hidden = _find_hidden_sides(problem, camera) & agrees[:, None]
     extent = np.tile(boxes[:, 2:] - boxes[:, :2], (1, 2))
     contradicted = np.abs(posed - boxes) > problem.settings.different * extent + problem.settings.border_px
     return np.where(agrees[:, None] & contradicted & ~hidden, boxes, posed), hidden
@@ -318,7 +318,7 @@ def _agrees(problem: Problem, camera: Camera) -> Bool[np.ndarray, " n"]:
     return np.array([bool(box_iou(a, b) >= least) for a, b in zip(posed, problem.box_px)], dtype=bool).reshape(-1)
 
 
-def _hidden_sides(problem: Problem, camera: Camera) -> Bool[np.ndarray, "n 4"]:
+def _find_hidden_sides(problem: Problem, camera: Camera) -> Bool[np.ndarray, "n 4"]:
     """Which sides of the photo's boxes are on its border or behind the boxes of nearer objects.
 
     What an object stands on does not hide its foot, what stands on it does not hide its top, and a rug hides nothing.
@@ -359,8 +359,8 @@ def disagreements(
         p: centres, world, metres.
         scale: along the axes of each object.
     """
-    seen = _posed_bounds_px(problem, camera)
-    now = _posed_bounds_px(replace(problem, R=R, p=p, scale=scale), camera)
+    seen = _project_all_bounds_px(problem, camera)
+    now = _project_all_bounds_px(replace(problem, R=R, p=p, scale=scale), camera)
     rows = []
     for i in np.flatnonzero(problem.free):
         moved = float(np.linalg.norm(p[i] - problem.p[i]))

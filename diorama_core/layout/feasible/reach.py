@@ -43,7 +43,7 @@ def reaching_loads(problem: Problem, structure: Structure, eye: Float[np.ndarray
             for sign in (-1.0, 1.0):
                 if any(k == j and sign * float(face[axis]) > 0.5 for k, _, face in problem.adheres):
                     continue
-                factor = max(_needed(problem, structure, int(i), sign * outward, axis, eye) for i in loads)
+                factor = max(_extent_factor(problem, structure, int(i), sign * outward, axis, eye) for i in loads)
                 extent = float(problem.shape_size[j, axis] * scale[j, axis])
                 farther = extent * (min(factor, problem.settings.max_stretch) - 1.0)
                 scale[j, axis] *= 1.0 + farther / extent
@@ -57,7 +57,7 @@ def _stands(problem: Problem, structure: Structure, i: int) -> bool:
     return place is not None and float(place.normal[2]) > problem.settings.upward and float(problem.firm[i]) == 1.0
 
 
-def _needed(
+def _extent_factor(
     problem: Problem, structure: Structure, i: int, outward: np.ndarray, axis: int, eye: np.ndarray | None
 ) -> float:
     """What the extent of a load's supporter must be multiplied by for its side to reach the load; 1 where it does.
@@ -68,7 +68,7 @@ def _needed(
     surface = structure.surface[i]
     assert surface is not None, "it stands on something"
     place: RestingSurface = surface.transform(structure.R[j], structure.p[j], structure.scale[j])
-    centre, grown = _seen(problem, i, place.level, eye)
+    centre, grown = _locate_along_sight(problem, i, place.level, eye)
     reach = float(reach_of(problem.footing[i], structure.R[i], grown * problem.scale[i], outward[None])[0])
     edge = float((place.polygon @ outward).max())
     beyond = float(outward @ centre) + reach + INSET_M - edge
@@ -88,7 +88,9 @@ def _is_near(place: RestingSurface, outward: np.ndarray, centre: np.ndarray) -> 
     return bool(along.min() <= float(across @ centre) <= along.max())
 
 
-def _seen(problem: Problem, i: int, level_m: float, eye: np.ndarray | None) -> tuple[Float[np.ndarray, "3"], float]:
+def _locate_along_sight(
+    problem: Problem, i: int, level_m: float, eye: np.ndarray | None
+) -> tuple[Float[np.ndarray, "3"], float]:
     """Where an object with its foot at a height is seen, and how many times as far away as it was observed."""
     p = problem.p[i]
     if eye is None:

@@ -22,7 +22,7 @@ from diorama_core.layout.feasible.heights import joint_heights
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.reach import reaching_ceilings, reaching_loads
 from diorama_core.layout.feasible.relocate import cheapest_spot, relocate
-from diorama_core.layout.feasible.separate import Program, Separation, base, build_program, overlaps, relaxed, separate
+from diorama_core.layout.feasible.separate import Program, Separation, base, build_program, overlaps, relax, separate
 from diorama_core.layout.feasible.structure import Structure, exact_structure
 from diorama_core.layout.feasible.visible_points import VisiblePoints, visible_points
 from diorama_core.layout.problem.problem import Problem, build_problem
@@ -84,15 +84,15 @@ class FeasibleRecipe:
         before = measure(problem, problem.R, problem.p, problem.scale)
         watched = scene.camera is not None and self._across > 1.0
         visible = visible_points(scene, self.library, self.settings) if watched else {}
-        wanted, observations = self._wanted(problem, scene.camera, visible)
+        wanted, observations = self._infer_unseen(problem, scene.camera, visible)
         best: tuple[Problem, Program, Separation] | None = None
         for _ in range(self.attempts):
-            seen = None if observations is None else observations.limited(wanted.scale)
+            seen = None if observations is None else observations.limit_sizes(wanted.scale)
             eye = scene.camera.position if scene.camera is not None and self.sizes_reasoned else None
             structure = exact_structure(wanted, self._rays(wanted, scene.camera), seen, eye=eye)
             program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             if seen is not None:
-                structure = fitted_sizes(program, self._outline_cost(wanted))
+                structure = fit_sizes(program, self._outline_cost(wanted))
                 program = build_program(wanted, structure, *self._costs(wanted, scene.camera))
             check = self._watcher(scene, program, progress, preview)
             separation = _apart(program, self.rounds, check)
@@ -110,8 +110,8 @@ class FeasibleRecipe:
         reasons = (
             problem.reasons
             + structure.reasons
-            + _shrunk_reasons(problem, wanted, structure)
-            + _stuck_reasons(problem, separation)
+            + _explain_smaller(problem, wanted, structure)
+            + _explain_overlaps(problem, separation)
         )
         apart: tuple[PhotoDisagreement, ...] = ()
         if scene.camera is not None:
@@ -121,7 +121,7 @@ class FeasibleRecipe:
         settled = edits.place(scene, problem.poses(structure.R, p, structure.scale))
         return edits.set_metrics(settled, after), report
 
-    def _wanted(
+    def _infer_unseen(
         self, problem: Problem, camera: Camera | None, visible: VisiblePoints
     ) -> tuple[Problem, PhotoObservations | None]:
         """The problem with what was not seen of objects as their neighbours, walls and loads say, and what was seen."""
@@ -139,7 +139,7 @@ class FeasibleRecipe:
         grown = np.flatnonzero((wider.scale != wanted.scale).any(axis=1))
         anew = self._observations(wider, camera, visible) if len(grown) else None
         if anew is not None:
-            observations = observations.replaced(grown, anew).no_smaller(wider.scale, wider.scale > wanted.scale)
+            observations = observations.replace_objects(grown, anew).no_smaller(wider.scale, wider.scale > wanted.scale)
         return wider, observations
 
     @property
@@ -220,7 +220,7 @@ def _apart(program: Program, rounds: int, check: Callable[[np.ndarray, float], N
     together = separate(program, rounds=rounds, check=check)
     if not program.tried:
         return together
-    ways = [relaxed(program, way) for way in (together, relocate(program, base(program)))]
+    ways = [relax(program, way) for way in (together, relocate(program, base(program)))]
     best = min(ways, key=lambda way: (len(way.stuck), float(program.cost(way.y))))
     check(best.y, best.depth_m)
     return best
@@ -239,7 +239,7 @@ def _smaller(problem: Problem, structure: Structure, separation: Separation) -> 
     return replace(problem, scale=scale, adheres=tuple(a for a in problem.adheres if a[0] not in stuck))
 
 
-def _shrunk_reasons(problem: Problem, wanted: Problem, structure: Structure) -> tuple[str, ...]:
+def _explain_smaller(problem: Problem, wanted: Problem, structure: Structure) -> tuple[str, ...]:
     shrunk = np.flatnonzero((wanted.scale < problem.scale - 1e-12).any(axis=1))
     smaller = [
         i
@@ -249,11 +249,11 @@ def _shrunk_reasons(problem: Problem, wanted: Problem, structure: Structure) -> 
     return tuple(f"{problem.labels[i]} was made smaller to fit between its neighbours" for i in smaller)
 
 
-def _stuck_reasons(problem: Problem, separation: Separation) -> tuple[str, ...]:
+def _explain_overlaps(problem: Problem, separation: Separation) -> tuple[str, ...]:
     return tuple(f"no room: {problem.labels[i]} and {problem.labels[j]} still overlap" for i, j in separation.stuck)
 
 
-def fitted_sizes(program: Program, outline_cost: Float[np.ndarray, " n"]) -> Structure:
+def fit_sizes(program: Program, outline_cost: Float[np.ndarray, " n"]) -> Structure:
     """The structure with colliding objects smaller where that costs less than the moves it saves.
 
     Objects that hold up others keep their sizes.
@@ -297,13 +297,13 @@ def _options(
             continue
         # A smaller size that still has to go far away is no help, and looking far takes long.
         reaches_m = problem.settings.reaches_m if (factor == 1.0).all() else problem.settings.reaches_m[:1]
-        spot = cheapest_spot(_resized(program, k, factors, factor), y, k, reaches_m)
+        spot = cheapest_spot(_resize(program, k, factors, factor), y, k, reaches_m)
         if spot is not None:
             options.append((float(np.hypot(spot.cost, shrunk)), factor))
     return options
 
 
-def _resized(program: Program, k: int, factors: Float[np.ndarray, "n 3"], factor: Float[np.ndarray, "3"]) -> Program:
+def _resize(program: Program, k: int, factors: Float[np.ndarray, "n 3"], factor: Float[np.ndarray, "3"]) -> Program:
     """The program with some objects smaller, each resting where it rests."""
     sizes = factors.copy()
     sizes[k] = factor

@@ -21,7 +21,7 @@ _IDENTITY = np.eye(3)
 _FRONT_FIRST = np.array([2.25, 1.0, 1.0])
 
 
-def aligned(
+def align(
     R: np.ndarray, contact: np.ndarray, surface: RestingSurface, against: list[tuple[np.ndarray, np.ndarray]]
 ) -> np.ndarray:
     """Swing the contact face onto the support, then twist about the normal to the observed front, or to a wall.

@@ -106,7 +106,7 @@ def build_program(
         problem,
         structure,
         bodies,
-        may_meet(problem, bodies, [_placed(structure, problem, i) for i in range(n)]),
+        may_meet(problem, bodies, [_surface_in_world(structure, problem, i) for i in range(n)]),
         J,
         np.abs(jacobian).max(axis=1, initial=0.0) > 1e-12,
         rows[alive],
@@ -115,7 +115,7 @@ def build_program(
     )
 
 
-def _placed(structure: Structure, problem: Problem, i: int) -> RestingSurface | None:
+def _surface_in_world(structure: Structure, problem: Problem, i: int) -> RestingSurface | None:
     """Where an object rests, in the world."""
     place, j = structure.surface[i], int(problem.parent[i])
     return place if place is None or j < 0 else place.transform(structure.R[j], structure.p[j], structure.scale[j])
@@ -184,7 +184,7 @@ def base(program: Program) -> Float[np.ndarray, " v"]:
     )
 
 
-def relaxed(program: Program, separation: Separation) -> Separation:
+def relax(program: Program, separation: Separation) -> Separation:
     """The least move in the neighbourhood of one that is free of overlap: as free of it, and never farther.
 
     Each pair of parts keeps the axis that parts it best where it was found; rows enter when they are violated.

@@ -12,7 +12,7 @@ from diorama_core.geometry.planes import plane_axes
 from diorama_core.geometry.vectors import cross
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.quadratic import HARD, least_distance
-from diorama_core.layout.feasible.rest import INSET_M, aligned, largest_share
+from diorama_core.layout.feasible.rest import INSET_M, align, largest_share
 from diorama_core.layout.problem.problem import Problem, reach_of
 
 
@@ -54,7 +54,7 @@ def settle(
         eye: the camera's position where sizes follow distances, as in `exact_structure`.
     """
     n = surface.normal
-    walk.R[i] = aligned(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
+    walk.R[i] = align(walk.R[i], problem.contact[i], surface, [(problem.walls[w].normal, f) for w, f in against])
     u, v = plane_axes(n)
     _shorten_before_walls(problem, walk, i)
     if observations is not None:
@@ -71,14 +71,14 @@ def settle(
     if observations is not None:
         pinned = problem.contact[i] + sum((face for _, face in against), np.zeros(3))
         pinned[2] -= float(grounded)
-        walk.p[i], walk.scale[i] = observations.fitted(
+        walk.p[i], walk.scale[i] = observations.fit_centre_and_scale(
             i, walk.R[i], walk.p[i], walk.scale[i], walk.basis[i], pinned, grown
         )
     m, slack = _fit_on_support(problem, walk, i, surface)
     if (slack < 0).any():
         _move_onto_support(problem, walk, i, surface, slack, m)
         if observations is not None:
-            _seen_from_the_edge(problem, walk, i, surface, observations, pinned, eye)
+            _move_along_edge(problem, walk, i, surface, observations, pinned, eye)
         m, slack = _fit_on_support(problem, walk, i, surface)
     walk.owners += [i] * len(m)
     walk.normals += list(m)
@@ -158,7 +158,7 @@ def _move_onto_support(
     walk.p[i] = walk.p[i] + (shortest if detour else along)
 
 
-def _seen_from_the_edge(
+def _move_along_edge(
     problem: Problem,
     walk: Walk,
     i: int,
@@ -178,7 +178,7 @@ def _seen_from_the_edge(
     grown = 1.0 if eye is None else _nearness(walk.p[i], problem.p[i], eye, problem.settings.max_growth)
     basis = np.column_stack([side / length, np.zeros(3)])
     start = walk.p[i].copy(), walk.scale[i].copy()
-    walk.p[i], walk.scale[i] = observations.fitted(i, walk.R[i], *start, basis, pinned, grown)
+    walk.p[i], walk.scale[i] = observations.fit_centre_and_scale(i, walk.R[i], *start, basis, pinned, grown)
     m, slack = _fit_on_support(problem, walk, i, surface)
     if (slack < 0).any():
         _move_onto_support(problem, walk, i, surface, slack, m)

@@ -70,7 +70,16 @@ def exact_structure(
             if surface is None:
                 walk.basis[i] = np.eye(3)[:, :2]
             else:
-                settle(problem, walk, i, _posed(walk, problem, i, surface), against.get(i, []), ray, observations, eye)
+                settle(
+                    problem,
+                    walk,
+                    i,
+                    _surface_in_world(walk, problem, i, surface),
+                    against.get(i, []),
+                    ray,
+                    observations,
+                    eye,
+                )
     owners = np.array(walk.owners, dtype=int)
     return Structure(
         walk.R, walk.p, walk.scale, walk.basis, owners,
@@ -84,9 +93,9 @@ def _level(problem: Problem, walk: Walk, i: int) -> RestingSurface | None:
         return problem.surface[i]
     size = problem.shape_size[i] * problem.scale[i]
     corners = problem.p[i] + box_corners(size) @ problem.R[i].T
-    return min(problem.levels[i], key=lambda s: box_misfit(corners, size, _posed(walk, problem, i, s)))
+    return min(problem.levels[i], key=lambda s: box_misfit(corners, size, _surface_in_world(walk, problem, i, s)))
 
 
-def _posed(walk: Walk, problem: Problem, i: int, surface: RestingSurface) -> RestingSurface:
+def _surface_in_world(walk: Walk, problem: Problem, i: int, surface: RestingSurface) -> RestingSurface:
     j = int(problem.parent[i])
     return surface if j < 0 else surface.transform(walk.R[j], walk.p[j], walk.scale[j])

@@ -67,7 +67,7 @@ def visible_points(scene: Scene, library: ShapeLibrary, settings: LayoutSettings
     return points
 
 
-def tracked_points(
+def select_tracked_points(
     problem: Problem,
     camera: Camera,
     posed_px: Float[np.ndarray, "n 4"],
@@ -104,7 +104,7 @@ def tracked_points(
     return tuple(tracked)
 
 
-def turned_points(
+def turn_points(
     points: Float[np.ndarray, "m 3"],
     size: Float[np.ndarray, "3"],
     R_from: Float[np.ndarray, "3 3"],

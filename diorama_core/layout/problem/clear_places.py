@@ -65,7 +65,7 @@ def clear_of_places(
         mesh: gives its geometry, which most shapes need not be asked for.
         carries: whether people put things on its places rather than sit on them.
     """
-    places = [(_inscribed(np.asarray(s.polygon)[:, :2]), s.height_m, s.height_m + s.clearance_m) for s in surfaces]
+    places = [(_sample_corners(np.asarray(s.polygon)[:, :2]), s.height_m, s.height_m + s.clearance_m) for s in surfaces]
     if not any(_reaches_over(part, _room_above(place, SETTINGS.rises_m[0])) for part in parts for place in places):
         return parts
     rises = (*SETTINGS.rises_m, SETTINGS.around_feet_m) if carries else SETTINGS.rises_m
@@ -82,7 +82,7 @@ def clear_of_places(
     return parts
 
 
-def _inscribed(outline: Float[np.ndarray, "k 2"]) -> Float[np.ndarray, "m 2"]:
+def _sample_corners(outline: Float[np.ndarray, "k 2"]) -> Float[np.ndarray, "m 2"]:
     """At most `MAX_SIDES` of an outline's corners, evenly along it."""
     if len(outline) <= SETTINGS.max_sides:
         return outline
@@ -128,7 +128,7 @@ def _reaches_over(part: ConvexPart, room: Room) -> bool:
     inside = [[*n, 0.0, SETTINGS.margin_m + SETTINGS.reaches_m - o] for n, o in zip(outward, offset, strict=True)]
     inside += [[0.0, 0.0, -1.0, low]]
     inside += [[0.0, 0.0, 1.0, -high]] if np.isfinite(high) else []
-    return len(_clipped(vertices, np.array(inside))) > 0
+    return len(_clip(vertices, np.array(inside))) > 0
 
 
 def _cut(part: ConvexPart, room: Room) -> list[ConvexPart]:
@@ -138,11 +138,11 @@ def _cut(part: ConvexPart, room: Room) -> list[ConvexPart]:
     beyond = [np.array([[-x, -y, 0.0, o - SETTINGS.margin_m]]) for (x, y), o in zip(outward, offset, strict=True)]
     beyond += [np.array([[0.0, 0.0, 1.0, -low]])]
     beyond += [np.array([[0.0, 0.0, -1.0, high]])] if np.isfinite(high) else []
-    clouds = [_clipped(part.vertices, half) for half in beyond]
+    clouds = [_clip(part.vertices, half) for half in beyond]
     return [simplest_part(cloud) for cloud in _not_contained([c for c in clouds if len(c)])]
 
 
-def _clipped(vertices: Float[np.ndarray, "v 3"], half_spaces: Float[np.ndarray, "h 4"]) -> Float[np.ndarray, "n 3"]:
+def _clip(vertices: Float[np.ndarray, "v 3"], half_spaces: Float[np.ndarray, "h 4"]) -> Float[np.ndarray, "n 3"]:
     """Corners of what of a convex body is inside half-spaces (normal . x + offset <= 0); none where nothing is."""
     deepest = (vertices @ half_spaces[:, :3].T + half_spaces[:, 3]).min(axis=0)
     if (deepest > -THINNEST_M).any():  # nothing as thick as that is inside

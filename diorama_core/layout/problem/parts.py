@@ -32,7 +32,7 @@ NAMES = ("keys", "sizes", "counts", "vertices", "normals", "edges")
 """Names of the arrays, in the order in which `PackedParts` takes them."""
 
 
-def packed(parts_by_key: Mapping[str, Parts]) -> dict[str, np.ndarray]:
+def pack(parts_by_key: Mapping[str, Parts]) -> dict[str, np.ndarray]:
     """The arrays: keys, parts per key (k), rows of each part in the three arrays (p 3), and these rows (n 3)."""
     parts = [part for group in parts_by_key.values() for part in group]
     columns = [[getattr(part, name) for part in parts] for name in NAMES[3:]]
@@ -43,7 +43,7 @@ def packed(parts_by_key: Mapping[str, Parts]) -> dict[str, np.ndarray]:
 
 
 class PackedParts(Mapping[str, Parts]):
-    """What `packed` made arrays of; parts are read when they are asked for.
+    """What `pack` made arrays of; parts are read when they are asked for.
 
     Args:
         arrays: In the order of `NAMES`.
@@ -101,14 +101,14 @@ def parts_of_shape(library: ShapeLibrary, shape: Shape) -> Parts:
     if not key:
         return clear_of_places(convex_parts(mesh()), shape.surfaces, mesh, carries=carries)
     return _CACHE.get(
-        key, lambda: clear_of_places(_known(key) or _made(key, mesh()), shape.surfaces, mesh, carries=carries)
+        key, lambda: clear_of_places(_find_parts(key) or _decompose(key, mesh()), shape.surfaces, mesh, carries=carries)
     )
 
 
 def parts_of_solids(vertices: Float[np.ndarray, "v 3"], faces: Int[np.ndarray, "f 3"]) -> Parts:
     """Convex bodies that together contain a mesh that is no shape of a library, such as one moving part of it."""
     key = solids_key(vertices, faces)
-    return _CACHE.get(key, lambda: _known(key) or _made(key, trimesh.Trimesh(vertices, faces, process=False)))
+    return _CACHE.get(key, lambda: _find_parts(key) or _decompose(key, trimesh.Trimesh(vertices, faces, process=False)))
 
 
 def solids_key(vertices: Float[np.ndarray, "v 3"], faces: Int[np.ndarray, "f 3"]) -> str:
@@ -118,7 +118,7 @@ def solids_key(vertices: Float[np.ndarray, "v 3"], faces: Int[np.ndarray, "f 3"]
 
 def is_built_in(shape: Shape) -> bool:
     """Whether the convex bodies of a shape come along."""
-    return shape.content_hash in _built_in()
+    return shape.content_hash in _read_built_in()
 
 
 def are_cached(shape: Shape) -> bool:
@@ -127,7 +127,7 @@ def are_cached(shape: Shape) -> bool:
 
 
 @cache
-def _built_in() -> Mapping[str, Parts]:
+def _read_built_in() -> Mapping[str, Parts]:
     return _read(BUILT_IN_PARTS)
 
 
@@ -144,12 +144,12 @@ def _read(path: Path) -> Mapping[str, Parts]:
         return {}
 
 
-def _known(key: str) -> Parts | None:
-    return _built_in().get(key) or _read(_path(key)).get(key)
+def _find_parts(key: str) -> Parts | None:
+    return _read_built_in().get(key) or _read(_path(key)).get(key)
 
 
-def _made(key: str, mesh: trimesh.Trimesh) -> Parts:
-    """Decomposed, and read back, so that a shape has the same parts whether they were computed or read."""
-    arrays = packed({key: convex_parts(mesh)})
+def _decompose(key: str, mesh: trimesh.Trimesh) -> Parts:
+    """Decompose, and read back, so that a shape has the same parts whether they were computed or read."""
+    arrays = pack({key: convex_parts(mesh)})
     write_arrays(_path(key), arrays)
     return PackedParts(*arrays.values())[key]

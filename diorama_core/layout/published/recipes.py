@@ -59,7 +59,7 @@ class PaperRecipe:
         for stage in stages[: self.stages]:
             if problem.count:
                 stage(problem, state, self.schedule, report, weights=self.weights)
-        return _finished("paper", scene, problem, state, begun)
+        return _place_and_report("paper", scene, problem, state, begun)
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class AllInOneRecipe:
             report = _reporter(scene, problem, progress, preview, self.schedule.steps)
             with one_thread():
                 _all_at_once(problem, state, self.schedule, self.weights, report)
-        return _finished("all-in-one", scene, problem, state, begun)
+        return _place_and_report("all-in-one", scene, problem, state, begun)
 
 
 @contextmanager
@@ -127,7 +127,9 @@ def _reporter(scene: Scene, problem: Problem, progress: Progress, preview: Previ
     return report
 
 
-def _finished(name: str, scene: Scene, problem: Problem, state: State, begun: float) -> tuple[Scene, LayoutReport]:
+def _place_and_report(
+    name: str, scene: Scene, problem: Problem, state: State, begun: float
+) -> tuple[Scene, LayoutReport]:
     before = measure(problem, problem.R, problem.p, problem.scale)
     after = measure(problem, state.R, state.p, state.scale)
     report = LayoutReport(name, before, after, time.perf_counter() - begun, problem.reasons)

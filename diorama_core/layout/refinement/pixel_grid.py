@@ -53,14 +53,14 @@ class PixelGrid:
         y, x = np.meshgrid(self.rows + 0.5, self.columns + 0.5, indexing="ij")
         return self.camera.rays(np.column_stack([x.ravel(), y.ravel()])).reshape(*x.shape, 3)
 
-    def sampled(self, mask: Bool[np.ndarray, "H W"]) -> Bool[np.ndarray, "h w"]:
+    def sample(self, mask: Bool[np.ndarray, "H W"]) -> Bool[np.ndarray, "h w"]:
         """A mask of the photo at these pixels."""
         return mask[np.ix_(self.rows, self.columns)]
 
     def labels(self, masks: Sequence[Bool[np.ndarray, "H W"] | None]) -> Int[np.ndarray, "h w"]:
         """Index of the mask at every pixel, -1 where there is none; of masks that overlap, the smaller one's."""
         labels = np.full((len(self.rows), len(self.columns)), -1)
-        sampled = [None if mask is None else self.sampled(mask) for mask in masks]
+        sampled = [None if mask is None else self.sample(mask) for mask in masks]
         largest_first = sorted((-int(m.sum()), i) for i, m in enumerate(sampled) if m is not None)
         for _, i in largest_first:
             labels[sampled[i]] = i

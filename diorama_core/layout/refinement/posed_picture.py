@@ -84,14 +84,14 @@ class PosedPicture:
         return cls(grid, wanted, casters, depth, settings)
 
     def __post_init__(self) -> None:
-        self._wanted_pixels = self._counts(self.wanted)
+        self._mask_pixels = self._counts(self.wanted)
         shown = _nearest(self.depth_m, np.arange(len(self.casters)))[1]
         self._pixels, self._right = self._counts(shown), self._counts(shown[shown == self.wanted])
 
     @property
-    def wanted_pixels(self) -> Int[np.ndarray, " n"]:
+    def mask_pixels(self) -> Int[np.ndarray, " n"]:
         """Pixels of each object's mask."""
-        return self._wanted_pixels
+        return self._mask_pixels
 
     def look(self, i: int, poses: PoseBatch) -> TriedPoses | None:
         """What is seen of object i in several poses near its present one, which is the first; None where nothing is."""
@@ -109,7 +109,7 @@ class PosedPicture:
         depth[1:, open_to_change] = _cast(self.grid, self.casters[i], rays, poses[1:])
         seen = [self._with(i, rest, depth_of_pose) for depth_of_pose in depth]
         pixels, right = np.array([p for p, _ in seen]), np.array([r for _, r in seen])
-        agreement = right / np.maximum(pixels + self.wanted_pixels - right, 1)
+        agreement = right / np.maximum(pixels + self.mask_pixels - right, 1)
         return TriedPoses(i, poses, rest, agreement, bounds)
 
     def replace(self, look: TriedPoses, chosen: int) -> None:

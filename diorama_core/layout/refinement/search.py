@@ -38,7 +38,7 @@ class Search:
         """The poses that were found, one for each object."""
         problem, room = self.problem, RoomLeft.of(self.problem)
         poses = PoseBatch(problem.R.copy(), problem.p.copy(), problem.scale.copy())
-        seen = self.picture.wanted_pixels >= self.settings.min_pixels
+        seen = self.picture.mask_pixels >= self.settings.min_pixels
         movable = [int(i) for i in np.flatnonzero(seen & problem.free) if problem.surface[i] is not None]
         for number, share in enumerate(self.settings.shares):
             moving = movable

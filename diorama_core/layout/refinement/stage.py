@@ -82,7 +82,7 @@ class MaskRefinement:
         )
         seconds = report.seconds + time.perf_counter() - begun
         refined = edits.place(scene, problem.poses(poses.R, poses.position, poses.scale))
-        return refined, _updated(replace(report, seconds=seconds), as_observed, scene.camera, poses)
+        return refined, _update_report(replace(report, seconds=seconds), as_observed, scene.camera, poses)
 
     def _picture(
         self, scene: Scene, camera: Camera, problem: Problem, detected_objects: Sequence[DetectedObject | None]
@@ -108,7 +108,7 @@ def _belong_to_sets(observed: Scene, ids: Sequence[str]) -> list[bool]:
     return [alike[sizes[name]] > 1 for name in ids]
 
 
-def _updated(report: LayoutReport, observed: Problem, camera: Camera, poses: PoseBatch) -> LayoutReport:
+def _update_report(report: LayoutReport, observed: Problem, camera: Camera, poses: PoseBatch) -> LayoutReport:
     """The report of a layout whose objects are in other poses now."""
     apart = disagreements(observed, camera, poses.R, poses.position, poses.scale)
     outdated = set(map(disagreement_in_words, report.disagreements))

@@ -18,7 +18,7 @@ from diorama_core.library.ingest.finding import Trouble
 from diorama_core.library.ingest.frames import Convention
 from diorama_core.library.ingest.guess import MAX_METRES, MIN_METRES
 from diorama_core.library.ingest.joint import Evidence, groups_of, joint_convention, sample_files
-from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes
+from diorama_core.library.ingest.known_shapes import KnownShapes, load_known_shapes
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
 from diorama_core.library.ingest.shaping import ModelSource, Painter, confidence, evidence_of, ingest_file
 from diorama_core.library.ingest.sink import Ingested, ShapeSink
@@ -152,7 +152,7 @@ def _learn(progress: Progress) -> float:
         progress.report(LEARNING_SHARE * share, "getting to know what furniture looks like (only this once)")
         took.append(share)
 
-    known_shapes(on_step=step)
+    load_known_shapes(on_step=step)
     return LEARNING_SHARE if took else 0.0
 
 
@@ -165,7 +165,7 @@ def _work(source: ModelSource, painter: Painter | None, limits: Limits) -> Inges
 
 @cache
 def _cached_shapes() -> KnownShapes:
-    return known_shapes()
+    return load_known_shapes()
 
 
 @cache

@@ -38,7 +38,7 @@ def relief_features(pictures: np.ndarray) -> Float32[np.ndarray, "*n f"]:
     return np.sqrt(pictures).reshape(*pictures.shape[:-4], -1).astype(np.float32)
 
 
-def known_shapes(
+def load_known_shapes(
     cache_dir: Path | None = None,
     on_step: Callable[[float], None] = lambda _: None,
     library: ShapeLibrary | None = None,

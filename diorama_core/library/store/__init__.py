@@ -24,8 +24,8 @@ __all__ = [
     "create_library",
     "libraries_folder",
     "library_folder",
+    "list_libraries",
     "open_library",
-    "stored_libraries",
 ]
 
 
@@ -34,8 +34,8 @@ def libraries_folder() -> Path:
     return Path(os.environ.get("DIORAMA_LIBRARIES") or Path(platformdirs.user_data_dir("diorama")) / "libraries")
 
 
-def stored_libraries() -> tuple[str, ...]:
-    """Names of the stored libraries."""
+def list_libraries() -> tuple[str, ...]:
+    """List the names of the stored libraries."""
     return tuple(sorted(path.parent.name for path in libraries_folder().glob("*/library.sqlite")))
 
 
@@ -89,6 +89,6 @@ def _single(name: str, anew: bool) -> ShapeLibrary:
         return built_in_library(default_cache_dir() if anew else None)
     folder = library_folder(name)
     if not (folder / "library.sqlite").exists():
-        known = ", ".join((BUILT_IN, *stored_libraries()))
+        known = ", ".join((BUILT_IN, *list_libraries()))
         raise LibraryError(f"there is no library {name!r}; available: {known}")
     return StoredLibrary(folder)

@@ -140,7 +140,7 @@ class Records:
                         row.thumbnail,
                     ),
                 )
-            return self._unused_models(dropped)
+            return self._find_unused_models(dropped)
 
     def remove(self, shape_ids: Sequence[str]) -> tuple[str, ...]:
         """Forget shapes; returns model files that nothing uses now."""
@@ -150,9 +150,9 @@ class Records:
                 known = db.execute("SELECT model FROM details WHERE id = ?", (shape_id,)).fetchone()
                 dropped |= set(known or ())
                 db.execute("DELETE FROM shapes WHERE id = ?", (shape_id,))
-            return self._unused_models(dropped)
+            return self._find_unused_models(dropped)
 
-    def _unused_models(self, models: set[str]) -> tuple[str, ...]:
+    def _find_unused_models(self, models: set[str]) -> tuple[str, ...]:
         used = "SELECT 1 FROM details WHERE model = ? LIMIT 1"
         return tuple(m for m in sorted(models) if self._db.execute(used, (m,)).fetchone() is None)
 

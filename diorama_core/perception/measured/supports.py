@@ -16,10 +16,10 @@ from diorama_core.arrangement.support_hypotheses import (
     RIM_SHARE,
     SupportHypothesis,
     ends_within,
-    seen_below,
+    visible_shares_below,
 )
-from diorama_core.arrangement.support_terms import fitted_weights
-from diorama_core.arrangement.supports import chosen_supports
+from diorama_core.arrangement.support_terms import support_weights
+from diorama_core.arrangement.supports import choose_supports
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.taxonomy import WITH_BOARDS, Category
 from diorama_core.perception.measured.boxes import TurnedExtent
@@ -44,10 +44,10 @@ def supports_of_boxes(
         depth_m: z in camera in metres; 0 where missing.
         settings: usual errors of heights, and what a gap says against a supporter.
     """
-    below = seen_below({o.id: o.mask for o in objects})
+    below = visible_shares_below({o.id: o.mask for o in objects})
     hidden = {o.id: rim_occlusion(o.mask, depth_m, settings) for o in objects}
     pictured = {o.id: o.box for o in objects}
-    weights = fitted_weights()
+    weights = support_weights()
     weights = replace(weights, terms={**weights.terms, "gap": settings.gap_nats})
 
     def hypotheses(key: str) -> Iterator[SupportHypothesis]:
@@ -75,7 +75,7 @@ def supports_of_boxes(
                 foot_in_box=ends_within(pictured[key], pictured[other]),
             )
 
-    choices = chosen_supports({key: tuple(hypotheses(key)) for key in extents}, weights)
+    choices = choose_supports({key: tuple(hypotheses(key)) for key in extents}, weights)
     return tuple(choices[key].edge for key in extents)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from diorama_app.panels.fields import UploadField, hidden_upload
+from diorama_app.panels.fields import UploadField, add_hidden_upload
 from diorama_app.session.client import Client
 from tests.app.page import Page
 
@@ -18,7 +18,7 @@ def test_a_chosen_file_is_handed_over_by_name_and_content(session, client: Clien
 
 def test_a_hidden_button_has_a_style_that_hides_it(client: Client, page: Page) -> None:
     shown = UploadField(page, client, "Open", lambda *_: None)
-    hidden = hidden_upload(page, client, "Dropped", lambda *_: None)
+    hidden = add_hidden_upload(page, client, "Dropped", lambda *_: None)
     assert f"#file_upload_{hidden}" in page.html
     assert f"#file_upload_{shown.uuid}" not in page.html
     shown.show_if(False)

@@ -80,8 +80,8 @@ def test_what_was_found_so_far_is_kept(session, page: Page, client) -> None:
 
     def work(progress: Progress) -> None:
         progress.report(0.1, "Outlining")
-        progress.part(0.0, 0.2).found("9 objects")
-        progress.found("3 walls")
+        progress.part(0.0, 0.2).report_finding("9 objects")
+        progress.report_finding("3 walls")
         told.set()
         assert go_on.wait(60.0)
 

@@ -5,7 +5,7 @@ import pytest
 from diorama_app.panels.optimiser import RECIPES, WEIGHTS, Optimiser, report_html
 from diorama_app.session.layout_run import LayoutRun
 from diorama_core.artefacts import LayoutReport
-from diorama_core.layout.settings import weighted_costs
+from diorama_core.layout.settings import cost_names
 from tests.app.page import Page
 
 START = "Optimise layout"
@@ -34,12 +34,12 @@ def test_weights_are_those_of_the_recipe(client, page, panel) -> None:
         page.write("Recipe", label)
         assert client.preferences.recipe == name
         for cost, (title, _) in WEIGHTS.items():
-            assert page.field(title).visible == (cost in weighted_costs(name))
+            assert page.field(title).visible == (cost in cost_names(name))
 
 
 def test_changed_weights_go_back_to_one(client, page, panel) -> None:
     assert page.field("Reset weights").disabled
-    shown = next(title for cost, (title, _) in WEIGHTS.items() if cost in weighted_costs(client.preferences.recipe))
+    shown = next(title for cost, (title, _) in WEIGHTS.items() if cost in cost_names(client.preferences.recipe))
     page.write(shown, 2.0)
     page.press("Reset weights")
     assert page.field(shown).value == 1.0

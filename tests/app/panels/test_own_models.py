@@ -98,7 +98,7 @@ def model(session, client, page: Page, tmp_path: Path, monkeypatch: pytest.Monke
 
 
 def selected(client) -> SceneObject:
-    return client.selected
+    return client.last_selected
 
 
 def test_only_own_models_are_offered_for_correction(client, page: Page, model) -> None:

@@ -14,7 +14,7 @@ from diorama_core.evaluation.benchmarks.retrieval import (
     _alone,
     _nearest,
     _ranks,
-    published_stages,
+    embedding_stages,
     retrieval_table,
 )
 from diorama_core.geometry.shape_appearance import appearance_of
@@ -79,7 +79,7 @@ def test_each_network_gets_the_publications_rows(
     view: TruthView, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("DIORAMA_CACHE", str(tmp_path))
-    stages = published_stages({"CLIP": ByColour(), "OS": ByColour(), "DD": ByColour()})
+    stages = embedding_stages({"CLIP": ByColour(), "OS": ByColour(), "DD": ByColour()})
     assert list(stages) == ["CLIP-H", "OS-H", "DD-T", "DD-V", "DD-H"]
     for stage in stages.values():
         found = _ranks(stage(LIBRARY), view)

@@ -16,9 +16,9 @@ from diorama_core.evaluation.metrics.architecture import (
     match_planes,
     pixel_error,
     plane_points,
-    seen_points,
     segment_iou,
     segment_pairs,
+    visible_points,
 )
 from diorama_core.scene.types import Camera, Plane
 from tests.synthetic_rooms import box_room, look, wall
@@ -118,13 +118,13 @@ def test_a_room_against_itself():
 
 def test_only_what_the_picture_shows_counts_as_seen():
     near, far = wall("near", (-1, 3), (0, 3), 2.0), wall("far", (-1, 6), (1, 6), 2.0)
-    points = seen_points((near, far), look(0, 0, height_m=1.0))
+    points = visible_points((near, far), look(0, 0, height_m=1.0))
     # Of the far wall the near one hides its left half, which it covers twice over from here; all else is in view.
     assert np.isclose(points[:, 1], 3).sum() == 20 * 40
     rest = points[np.isclose(points[:, 1], 6)]
     assert rest[:, 0].min() > 0
     assert len(rest) == 20 * 40
-    assert not len(seen_points((wall("behind", (1, -2), (-1, -2), 2.0),), look(0, 0)))
+    assert not len(visible_points((wall("behind", (1, -2), (-1, -2), 2.0),), look(0, 0)))
 
 
 def test_rooms_that_differ_behind_the_camera_look_alike():

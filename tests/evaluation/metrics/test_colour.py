@@ -15,7 +15,7 @@ from diorama_core.evaluation.metrics.colour import (
     lab_of,
     light_error_deg,
     main_light,
-    perceived_difference,
+    perceptual_difference,
     visible_colours,
 )
 from diorama_core.library.catalogue import built_in_library
@@ -47,8 +47,8 @@ def test_the_published_pairs(first, second, expected) -> None:
 
 @given(colours, colours)
 def test_it_is_symmetric_and_nothing_for_equal_colours(a, b) -> None:
-    assert perceived_difference(a, b) == pytest.approx(perceived_difference(b, a), abs=1e-6)
-    assert perceived_difference(a, a) == pytest.approx(0.0, abs=1e-6)
+    assert perceptual_difference(a, b) == pytest.approx(perceptual_difference(b, a), abs=1e-6)
+    assert perceptual_difference(a, a) == pytest.approx(0.0, abs=1e-6)
 
 
 @given(unit, unit)

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from diorama_core.layout.feasible.object_fit import ObjectFit, bounded_step
+from diorama_core.layout.feasible.object_fit import ObjectFit, solve_bounded_step
 from tests.layout.feasible.test_photo_observations import LIBRARY, looking_north, observations_of
 from tests.layout.small_rooms import Room
 
@@ -28,10 +28,10 @@ def test_derivatives_are_the_slopes(x: float, y: float, yaw: float, state: list[
     )
     assert isinstance(fit, ObjectFit)
     here, step = np.array(state), 1e-6
-    system = fit.linearised(here)
+    system = fit.linearise(here)
     assert system is not None
     for k, towards in enumerate(step * np.eye(5)):
-        ahead, behind = fit.linearised(here + towards), fit.linearised(here - towards)
+        ahead, behind = fit.linearise(here + towards), fit.linearise(here - towards)
         assert ahead is not None
         assert behind is not None
         slope = (ahead[1] - behind[1]) / (2 * step)
@@ -44,6 +44,6 @@ def test_derivatives_are_the_slopes(x: float, y: float, yaw: float, state: list[
 def test_a_size_that_reaches_its_limit_is_held_there_and_the_rest_solved_again() -> None:
     J = np.vstack([np.eye(5), [1.0, 0.0, 0.0, 0.0, 1.0]])
     wanted = np.array([0.0, 0.0, 0.05, -0.05, 0.5, 0.5])
-    step = bounded_step(J, -wanted, np.full(3, -0.2), np.full(3, 0.2))
+    step = solve_bounded_step(J, -wanted, np.full(3, -0.2), np.full(3, 0.2))
     assert np.isclose(step[4], 0.2)
     np.testing.assert_allclose(step[:4], [0.15, 0.0, 0.05, -0.05], atol=1e-9)  # half of what the limit left over

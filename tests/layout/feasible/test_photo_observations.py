@@ -113,8 +113,8 @@ def test_what_was_made_smaller_is_not_made_larger_again(room: Room) -> None:
     scene = room.scene(camera=looking_north())
     observations = observations_of(scene)
     smaller = np.full((1, 3), 0.9)
-    assert (observations.limited(smaller).most == 0.9).all()
-    assert (observations.limited(np.ones((1, 3))).most == observations.most).all()
+    assert (observations.limit_sizes(smaller).most == 0.9).all()
+    assert (observations.limit_sizes(np.ones((1, 3))).most == observations.most).all()
 
 
 def test_a_side_behind_a_nearer_object_is_a_least_bound(room: Room) -> None:

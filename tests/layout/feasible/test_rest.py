@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from diorama_core.arrangement.surfaces import RestingSurface
 from diorama_core.geometry.rotations import rotation_from_vector
-from diorama_core.layout.feasible.rest import aligned, largest_share, swing
+from diorama_core.layout.feasible.rest import align, largest_share, swing
 
 directions = st.tuples(*(st.floats(-1.0, 1.0) for _ in range(3))).filter(lambda v: np.linalg.norm(v) > 0.1)
 BACK, BOTTOM = np.array([-1.0, 0.0, 0.0]), np.array([0.0, 0.0, -1.0])
@@ -42,14 +42,14 @@ def test_opposite_directions_swing_by_half_a_turn(a):
 @pytest.mark.parametrize("yaw", [0.0, 0.7, 2.5, -1.8])
 def test_what_leans_stands_upright_and_looks_where_it_looked(yaw):
     seen = rotation_from_vector(np.array([0.0, 0.0, yaw])) @ swing(np.array([0.0, 0.0, 1.0]), unit((0.0, 0.1, 1.0)))
-    R = aligned(seen, BOTTOM, level(), [])
+    R = align(seen, BOTTOM, level(), [])
     np.testing.assert_allclose(R @ BOTTOM, BOTTOM, atol=1e-9)
     assert float(R[:2, 0] @ seen[:2, 0]) / np.linalg.norm(seen[:2, 0]) == pytest.approx(1.0, abs=0.01)
 
 
 def test_what_stands_against_a_wall_turns_its_face_to_it():
     wall = unit((1.0, 0.2, 0.0))
-    R = aligned(rotation_from_vector(np.array([0.0, 0.0, 0.9])), BOTTOM, level(), [(wall, BACK)])
+    R = align(rotation_from_vector(np.array([0.0, 0.0, 0.9])), BOTTOM, level(), [(wall, BACK)])
     np.testing.assert_allclose(R @ BACK, -wall, atol=1e-9)
 
 

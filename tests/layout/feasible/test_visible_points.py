@@ -7,8 +7,8 @@ import pytest
 
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
 from diorama_core.layout.feasible.visible_points import (
-    tracked_points,
-    turned_points,
+    select_tracked_points,
+    turn_points,
     visible_points,
 )
 from diorama_core.layout.problem.problem import build_problem
@@ -50,7 +50,9 @@ def test_tracked_points_are_where_the_camera_sees_them(room: Room) -> None:
     scene = room.scene(camera=looking_north())
     problem = build_problem(scene, room.library)
     bounds = np.array([outline(scene, box)])
-    (tracked,) = tracked_points(problem, scene.camera, bounds, bounds + 30.0, visible_points(scene, room.library))
+    (tracked,) = select_tracked_points(
+        problem, scene.camera, bounds, bounds + 30.0, visible_points(scene, room.library)
+    )
     assert tracked.seen
     x1, y1, x2, y2 = bounds[0]
     assert (tracked.pixels > [x1 - 2, y1 - 2]).all()
@@ -64,7 +66,7 @@ def test_corners_stand_for_what_is_not_seen_and_follow_its_bounds(room: Room) ->
     scene = room.scene(camera=looking_north())
     problem = build_problem(scene, room.library)
     bounds = np.array([outline(scene, box)])
-    (tracked,) = tracked_points(problem, scene.camera, bounds, bounds + 30.0, {})
+    (tracked,) = select_tracked_points(problem, scene.camera, bounds, bounds + 30.0, {})
     assert not tracked.seen
     np.testing.assert_allclose(tracked.pixels.min(axis=0), bounds[0, :2] + 30.0, atol=1.5)
 
@@ -76,7 +78,7 @@ def test_points_in_the_picture_stay_when_a_box_is_turned_by_quarters(turns: int)
     seen = Pose.upright((0.0, 0.0, 0.0), 0.1).R_world_object
     turned = Pose.upright((0.0, 0.0, 0.0), 0.05 + turns * np.pi / 2).R_world_object
     before = box_corners(size)
-    same = turned_points(before, size, seen, turned) * (after / size)
+    same = turn_points(before, size, seen, turned) * (after / size)
     assert np.abs(before @ seen.T - same @ turned.T).max() < 0.1
 
 

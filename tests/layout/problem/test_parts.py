@@ -14,7 +14,7 @@ from diorama_core.geometry.convex import convex_parts
 from diorama_core.io.cache import LruCache
 from diorama_core.layout.problem import parts
 from diorama_core.layout.problem.clear_places import clear_of_places
-from diorama_core.layout.problem.parts import NAMES, PackedParts, packed
+from diorama_core.layout.problem.parts import NAMES, PackedParts, pack
 from diorama_core.library.catalogue import built_in_library
 from tests.primitives import PrimitiveLibrary
 
@@ -24,7 +24,7 @@ SHAPES = ("table", "chair", "ball")
 def test_parts_of_many_shapes_are_the_same_after_packing() -> None:
     library = PrimitiveLibrary()
     made = {f"key {k}": convex_parts(library.mesh(k)) for k in SHAPES}
-    again = PackedParts(*packed(made).values())
+    again = PackedParts(*pack(made).values())
     assert list(again) == list(made)
     for key, group in made.items():
         assert len(again[key]) == len(group)
@@ -36,7 +36,7 @@ def test_parts_of_many_shapes_are_the_same_after_packing() -> None:
 @pytest.mark.parametrize("name", NAMES[1:])
 def test_arrays_that_do_not_belong_together_are_refused(name: str) -> None:
     library = PrimitiveLibrary()
-    arrays = packed({k: convex_parts(library.mesh(k)) for k in SHAPES})
+    arrays = pack({k: convex_parts(library.mesh(k)) for k in SHAPES})
     arrays[name] = arrays[name][:-1]
     with pytest.raises(ValueError, match="belong together"):
         PackedParts(*arrays.values())

@@ -53,7 +53,7 @@ def _few_known_shapes(monkeypatch: pytest.MonkeyPatch) -> None:
         np.stack([relief_features(relief(mesh)) for _, mesh in rows]),
         np.log([mesh.extents for _, mesh in rows]),
     )
-    monkeypatch.setattr(adding, "known_shapes", lambda **_: known)
+    monkeypatch.setattr(adding, "load_known_shapes", lambda **_: known)
     adding._cached_shapes.cache_clear()
     monkeypatch.setattr(adding, "_limit_memory", lambda most: None)
 
@@ -250,14 +250,14 @@ def test_a_source_is_a_plain_value(folder: Path) -> None:
 def test_progress_only_grows_and_a_first_import_spends_most_of_it_on_learning(
     steps: int, folder: Path, library: StoredLibrary, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    known = adding.known_shapes()
+    known = adding.load_known_shapes()
 
     def learn(on_step: Callable[[float], None] = lambda _: None) -> KnownShapes:
         for number in range(steps):
             on_step((number + 1) / steps)
         return known
 
-    monkeypatch.setattr(adding, "known_shapes", learn)
+    monkeypatch.setattr(adding, "load_known_shapes", learn)
     events: list[ProgressEvent] = []
     added(folder, library, progress=Progress(on_event=events.append))
     shares = [event.fraction for event in events]

@@ -13,7 +13,7 @@ from diorama_core.library import taxonomy
 from diorama_core.library.ingest.frames import GLTF, STL, UNKNOWN, Convention
 from diorama_core.library.ingest.given import Given, axis_name, axis_vector
 from diorama_core.library.ingest.guess import Frame, guess_frame
-from diorama_core.library.ingest.known_shapes import KnownShapes, known_shapes, relief_features
+from diorama_core.library.ingest.known_shapes import KnownShapes, load_known_shapes, relief_features
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.names import NameEvidence, name_evidence
@@ -157,7 +157,7 @@ def models(shared: Path) -> list[Model]:
 
 @pytest.fixture(scope="module")
 def built_in() -> KnownShapes:
-    return known_shapes()
+    return load_known_shapes()
 
 
 def shares(models: list[Model], known: KnownShapes, convention: Convention, shuffled: bool) -> tuple[float, ...]:

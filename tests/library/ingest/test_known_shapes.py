@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from diorama_core.library.ingest import known_shapes as module
-from diorama_core.library.ingest.known_shapes import known_shapes
+from diorama_core.library.ingest.known_shapes import load_known_shapes
 from diorama_core.library.record import Shape
 from tests.primitives import PrimitiveLibrary
 
@@ -27,18 +27,18 @@ def test_only_a_changed_shape_is_taken_again(tmp_path: Path, monkeypatch: pytest
     relief = module.relief
     monkeypatch.setattr(module, "relief", lambda mesh: taken.append(len(mesh.faces)) or relief(mesh))
     library = PrimitiveLibrary()
-    first = known_shapes(tmp_path, library=library)
+    first = load_known_shapes(tmp_path, library=library)
     assert len(taken) == len(first.categories) == len(first.features)
-    again = known_shapes(tmp_path, library=library)
+    again = load_known_shapes(tmp_path, library=library)
     assert len(taken) == len(first.categories)
     assert np.array_equal(again.features, first.features)
-    renewed = known_shapes(tmp_path, library=Renewed())
+    renewed = load_known_shapes(tmp_path, library=Renewed())
     assert len(taken) == len(first.categories) + 1
     assert np.array_equal(renewed.features, first.features)
 
 
 def test_a_damaged_file_is_taken_again(tmp_path: Path) -> None:
-    first = known_shapes(tmp_path, library=PrimitiveLibrary())
+    first = load_known_shapes(tmp_path, library=PrimitiveLibrary())
     (retained,) = (tmp_path / "reliefs").iterdir()
     retained.write_bytes(retained.read_bytes()[:200])
-    assert np.array_equal(known_shapes(tmp_path, library=PrimitiveLibrary()).features, first.features)
+    assert np.array_equal(load_known_shapes(tmp_path, library=PrimitiveLibrary()).features, first.features)

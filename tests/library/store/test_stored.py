@@ -17,8 +17,8 @@ from diorama_core.library.store import (
     StoredLibrary,
     create_library,
     library_folder,
+    list_libraries,
     open_library,
-    stored_libraries,
 )
 from diorama_core.library.store.records import Records
 
@@ -187,7 +187,7 @@ def test_a_newer_librarys_file_is_not_touched(library: StoredLibrary) -> None:
 def test_names_and_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DIORAMA_LIBRARIES", str(tmp_path))
     create_library("mine").add(ingested("a"))
-    assert stored_libraries() == ("mine",)
+    assert list_libraries() == ("mine",)
     assert [s.id for s in open_library("mine").shapes()] == ["a"]
     assert [s.id for s in open_library(f"{tmp_path}/mine").shapes()] == ["a"]
     with pytest.raises(LibraryError, match="no library 'theirs'; available: built-in, mine"):
