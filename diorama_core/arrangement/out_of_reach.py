@@ -23,8 +23,8 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene, SceneObject, Support
 
-REASONED_M = 0.3
-"""The distance from a place for heights that were reasoned from a photo alone."""
+FAR_M = 0.3
+"""The distance from a place for heights that were reasoned from a photo alone, and for measured ones from a wall."""
 
 
 def detach_out_of_reach(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
@@ -52,7 +52,7 @@ def detach_out_of_reach(scene: Scene, library: ShapeLibrary, noise: ObservationN
 def is_out_of_reach(
     scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, *, measured: bool = True
 ) -> bool:
-    """Whether a thing that people put on others was seen clearly away from where an edge puts it.
+    """Whether an object was seen clearly away from where an edge puts it.
 
     Where distances were reasoned only its height tells: over what it was seen follows from what holds it.
 
@@ -65,10 +65,13 @@ def is_out_of_reach(
     """
     kind = taxonomy.resolve(item.category).category
     if measured and kind.mount == "wall" and scene.has_plane(edge.parent) and edge.relation == "mounted on":
-        # What was measured turned from a wall hangs on another one, which the photo does not show.
-        return abs(float(item.pose.R_world_object[:, 0] @ scene.plane(edge.parent).normal)) < FLAT
-    movable = not item.locked and not is_soft(item) and taxonomy.lies_on_furniture(kind.name)
-    if not movable or (kind.mount != "surface" and scene.has_plane(edge.parent)):
+        # What was measured turned from a wall, or far before it, hangs on another one.
+        wall = scene.plane(edge.parent)
+        turned = abs(float(item.pose.R_world_object[:, 0] @ wall.normal)) < FLAT
+        return turned or resting_cost(scene, item, edge, plane_surface(wall)) > FAR_M
+    if item.locked or is_soft(item) or not (taxonomy.lies_on_furniture(kind.name) or measured):
+        return False
+    if kind.mount != "surface" and scene.has_plane(edge.parent):
         return False
     if scene.has_plane(edge.parent):
         plane = plane_surface(scene.plane(edge.parent))
@@ -81,4 +84,4 @@ def is_out_of_reach(
         return resting_cost(scene, item, edge, place) > OUT_OF_REACH_M
     if measured:
         return not reaches(item, place)
-    return abs(float((item.corners_world @ place.normal).min()) - place.level) > REASONED_M
+    return abs(float((item.corners_world @ place.normal).min()) - place.level) > FAR_M

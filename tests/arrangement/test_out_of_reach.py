@@ -100,11 +100,25 @@ def test_furniture_keeps_its_floor(room: Room) -> None:
     assert detach_out_of_reach(scene, LIBRARY, MEASURED) == (scene, ())
 
 
-@pytest.mark.parametrize(("yaw", "stays"), [(-np.pi / 2, True), (-np.pi / 2 + 0.5, True), (np.pi, False)])
-def test_a_picture_that_was_measured_turned_from_its_wall_hangs_on_another_one(
-    room: Room, yaw: float, stays: bool
+def test_a_wall_lamp_that_was_measured_beside_a_table_is_not_on_it(room: Room) -> None:
+    table = room.put("table_0", (0.0, 1.0, 0.37))
+    depth, _, top = room.objects[0].size_m
+    lamp = room.put("cup_21", (depth / 2 + 0.6, 1.0, top + 0.1), on=table, box_px=BOX_PX)
+    scene = room.scene(camera=looking_north())
+    scene = replace(
+        scene, objects=tuple(replace(o, category="wall lamp") if o.id == lamp else o for o in scene.objects)
+    )
+    assert detach_out_of_reach(scene, LIBRARY, MEASURED)[0].support_of(lamp) is None
+
+
+@pytest.mark.parametrize(
+    ("gap_m", "yaw", "stays"),
+    [(0.1, -np.pi / 2, True), (0.1, -np.pi / 2 + 0.5, True), (0.1, np.pi, False), (1.0, -np.pi / 2, False)],
+)
+def test_a_picture_that_was_measured_turned_from_its_wall_or_far_from_it_hangs_on_another_one(
+    room: Room, gap_m: float, yaw: float, stays: bool
 ) -> None:
-    picture = room.put("picture_13", (0.5, 1.5, 1.5), on="wall_2", relation="mounted on", yaw=yaw)
+    picture = room.put("picture_13", (0.5, 2.5 - gap_m, 1.5), on="wall_2", relation="mounted on", yaw=yaw)
     scene = room.scene(camera=looking_north())
     assert (detach_out_of_reach(scene, LIBRARY, MEASURED)[0].support_of(picture) is not None) == stays
     assert detach_out_of_reach(scene, LIBRARY, REASONED) == (scene, ())
