@@ -7,6 +7,7 @@ Nothing is known to hold it, and it stays where it was measured.
 from __future__ import annotations
 
 from diorama_core.arrangement.support_hypotheses import ObservationNoise
+from diorama_core.arrangement.support_terms import FAR_TOLERANCES
 from diorama_core.arrangement.surfaces import (
     FLAT,
     OUT_OF_REACH_M,
@@ -23,8 +24,8 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene, SceneObject, Support
 
-FAR_M = 0.3
-"""The distance from a place for heights that were reasoned from a photo alone, and for measured ones from a wall."""
+REASONED_M = 0.3
+"""The distance from a place for heights that were reasoned from a photo alone."""
 
 
 def detach_out_of_reach(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
@@ -40,7 +41,7 @@ def detach_out_of_reach(scene: Scene, library: ShapeLibrary, noise: ObservationN
         edge = scene.support_of(item.id)
         if edge is None or (not noise.measured and not scene.has_object(edge.parent)):
             continue
-        if is_out_of_reach(scene, library, item, edge, measured=noise.measured):
+        if is_out_of_reach(scene, library, item, edge, noise):
             scene = edits.detach(scene, item.id)
             reasons.append(
                 f"please check: {item.label} was seen away from {label_of(scene, edge.parent)}; what holds it is "
@@ -50,7 +51,7 @@ def detach_out_of_reach(scene: Scene, library: ShapeLibrary, noise: ObservationN
 
 
 def is_out_of_reach(
-    scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, *, measured: bool = True
+    scene: Scene, library: ShapeLibrary, item: SceneObject, edge: Support, noise: ObservationNoise
 ) -> bool:
     """Whether an object was seen clearly away from where an edge puts it.
 
@@ -61,15 +62,16 @@ def is_out_of_reach(
         library: of the scene's shapes.
         item: the object as it was seen.
         edge: its support.
-        measured: whether distances were measured, not inferred from sizes.
+        noise: of the observed positions.
     """
     kind = taxonomy.resolve(item.category).category
-    if measured and kind.mount == "wall" and scene.has_plane(edge.parent) and edge.relation == "mounted on":
-        # What was measured turned from a wall, or far before it, hangs on another one.
+    if noise.measured and kind.mount == "wall" and scene.has_plane(edge.parent) and edge.relation == "mounted on":
+        # What was measured turned from a wall, or far before it, hangs on another one; a wall before it was not seen.
         wall = scene.plane(edge.parent)
         turned = abs(float(item.pose.R_world_object[:, 0] @ wall.normal)) < FLAT
-        return turned or resting_cost(scene, item, edge, plane_surface(wall)) > FAR_M
-    if item.locked or is_soft(item) or not (taxonomy.lies_on_furniture(kind.name) or measured):
+        before_m = float((item.corners_world @ wall.normal).min()) - wall.offset
+        return turned or before_m > FAR_TOLERANCES * noise.tolerance_m(scene.camera, item.pose.position, wall.normal)
+    if item.locked or is_soft(item) or not (taxonomy.lies_on_furniture(kind.name) or noise.measured):
         return False
     if kind.mount != "surface" and scene.has_plane(edge.parent):
         return False
@@ -82,6 +84,6 @@ def is_out_of_reach(
     place = choose_surface(scene, item, edge, library.shape(parent.shape_id)).to_world(parent.pose)
     if edge.relation == "mounted on":
         return resting_cost(scene, item, edge, place) > OUT_OF_REACH_M
-    if measured:
+    if noise.measured:
         return not reaches(item, place)
-    return abs(float((item.corners_world @ place.normal).min()) - place.level) > FAR_M
+    return abs(float((item.corners_world @ place.normal).min()) - place.level) > REASONED_M
