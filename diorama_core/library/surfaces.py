@@ -24,7 +24,7 @@ from diorama_core.geometry.planes import signed_area
 from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.library.record import SupportSurface
 
-SURFACES_VERSION = 4
+SURFACES_VERSION = 5
 """Raise it when other surfaces are found on the same shape, so that those on disk are measured again."""
 MINIMUM_UP = 0.9
 """Cosine of the steepest slope that still carries objects."""
@@ -103,7 +103,7 @@ def support_surfaces(mesh: trimesh.Trimesh, lattice: int = 72, *, carries: bool 
         if not _is_enclosed(surface, caster):
             surfaces.append(surface)
     if ledges:
-        surfaces = [s for s in surfaces if s.interior or not _is_walled_in(s, caster)]
+        surfaces = [s for s in surfaces if s.interior or not _is_walled_in(s, caster, SEAM_STEP_M)]
     surfaces = _join(surfaces) + ledges
     return tuple(sorted(surfaces, key=lambda s: (-round(s.height_m, 3), *np.round(s.polygon.mean(axis=0)[:2], 3))))
 
@@ -299,12 +299,12 @@ def _surface(spots: _Spots, region: Int[np.ndarray, "k"], outline: Float[np.ndar
 
 def _is_enclosed(surface: SupportSurface, caster: RayScene) -> bool:
     """Whether a surface has a ceiling and walls on all four sides: nobody puts things into a closed cupboard."""
-    return bool(np.isfinite(surface.clearance_m)) and _is_walled_in(surface, caster)
+    halfway_m = 0.5 * surface.clearance_m
+    return bool(np.isfinite(halfway_m)) and _is_walled_in(surface, caster, halfway_m)
 
 
-def _is_walled_in(surface: SupportSurface, caster: RayScene) -> bool:
-    """Whether a surface has walls on all four sides, halfway to what is above it or as high as a seam."""
-    above = min(0.5 * surface.clearance_m, SEAM_STEP_M)
-    middle = [*surface.polygon[:, :2].mean(axis=0), surface.height_m + above]
+def _is_walled_in(surface: SupportSurface, caster: RayScene, above_m: float) -> bool:
+    """Whether there are walls on all four sides so far above a surface."""
+    middle = [*surface.polygon[:, :2].mean(axis=0), surface.height_m + above_m]
     ahead = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])
     return bool(caster.is_occluded(np.column_stack([np.tile(middle, (4, 1)), ahead]).astype(np.float32)).all())

@@ -132,3 +132,10 @@ def test_the_inside_of_a_tray_stays_a_place() -> None:
     tray = block((0.4, 0.6, 0.05), (0, 0, 0)).difference(block((0.36, 0.56, 0.05), (0, 0, 0.02)))
     (inside,) = support_surfaces(tray, carries=True)
     assert inside.height_m == pytest.approx(-0.005, abs=1e-3)
+
+
+def test_a_shelf_with_a_low_rim_under_a_roof_stays_a_place() -> None:
+    tray = block((0.4, 0.6, 0.1), (0, 0, 0.05)).difference(block((0.36, 0.56, 0.1), (0, 0, 0.07)))
+    posts = [block((0.02, 0.02, 0.4), (sx * 0.19, sy * 0.29, 0.3)) for sx in (1, -1) for sy in (1, -1)]
+    roofed = trimesh.util.concatenate([tray, *posts, block((0.4, 0.6, 0.02), (0, 0, 0.51))])
+    assert [round(s.height_m, 2) for s in support_surfaces(roofed, carries=True) if s.interior] == [0.02]
