@@ -8,9 +8,11 @@ marked `unchecked` passes wrong values on purpose, or measures time.
 
 from __future__ import annotations
 
+import gc
 import inspect
 import os
 import random
+import threading
 import warnings
 from collections.abc import Callable
 from dataclasses import is_dataclass
@@ -57,7 +59,31 @@ def install() -> None:
 
     jaxtyping.jaxtyped = jaxtyped  # type: ignore[assignment]  # the hook takes it by this name
     _import_hook._optimized_cache_from_source = compiled_at
+    _import_hook._JaxtypingLoader.source_to_code = _undisturbed(_import_hook._JaxtypingLoader.source_to_code)
     jaxtyping.install_import_hook(PACKAGES, f"{__name__}.check")
+
+
+_compiling = threading.RLock()
+
+
+def _undisturbed(compiles: Callable[..., CodeType]) -> Callable[..., CodeType]:
+    """Compile one module at a time, without collecting garbage meanwhile.
+
+    Where CPython 3.11 makes a tree of Python objects, it counts the depth for all threads together: if a finalizer lets
+    another thread begin a tree there, it raises `SystemError: AST constructor recursion depth mismatch`.
+    """
+
+    def compile_alone(*args: Any, **kwargs: Any) -> CodeType:
+        with _compiling:
+            collecting = gc.isenabled()
+            gc.disable()
+            try:
+                return compiles(*args, **kwargs)
+            finally:
+                if collecting:
+                    gc.enable()
+
+    return compile_alone
 
 
 _OURS = tuple(str(Path(__file__).resolve().parents[1] / package) for package in PACKAGES)

@@ -177,6 +177,12 @@ class Client:
         now = tuple(replace(p, inputs=inputs) if p is further else p for p in self.session.further_photos)
         self.session.commit(label, self.session.scene, further=now, by=self)
 
+    def forget_choices(self) -> None:
+        """Choose nothing: ids and places in lists mean something else in another project."""
+        self.selection, self.surface, self.rooms, self.doing = (), None, frozenset(), None
+        self.photo_name = self.selected_box = None
+        self.view.canvas.close()
+
     def choose_photo(self, name: str | None) -> None:
         """Mark and look through another photo."""
         if name != self.photo_name:

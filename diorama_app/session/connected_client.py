@@ -42,6 +42,10 @@ class ConnectedClient(Protocol):
     go_to: Callable[[str], None]
     """Takes this browser to a project, by the name of its folder."""
 
+    def forget_choices(self) -> None:
+        """Choose nothing: ids and places in lists mean something else in another project."""
+        ...
+
     def drop_missing(self) -> None:
         """Deselect objects that no longer exist."""
         ...

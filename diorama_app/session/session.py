@@ -170,7 +170,7 @@ class EditorSession(SharedDocument):
         self.saving.is_saved(self.document)
         self.layout_run = None
         for client in self.clients.values():
-            client.view.canvas.close()
+            client.forget_choices()
         self.view.show_whole_room()
         self.refresh()
         for client in self.clients.values():

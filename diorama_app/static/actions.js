@@ -15,19 +15,33 @@
     window.__viserMutable.sendMessage({ type: "GuiUpdateMessage", uuid, updates });
   };
 
-  // Where a redraw takes away what is pressed before it is let go, browsers send its click to what is around it: the
-  // same action in the new drawing gets one instead.
-  const ACTION = ".dio [data-do]";
-  let pressed = null;
+  // Browsers send a click to what is around the places of both press and release. A redraw in between takes away what is
+  // pressed: the same action in the new drawing gets the click. A change of the layout moves what is pressed away from a
+  // pointer that stands still: it gets the click itself.
+  const ACTION = ".dio [data-do]", BUTTON = `button, [role=tab], ${ACTION}`, STILL_PX = 3;
+  let press = null, clicked = false;
+  const heir = ({ action, node, x, y }, event) => {
+    const under = document.elementFromPoint(event.clientX, event.clientY);
+    if (action && !action.isConnected) {
+      const same = under?.closest(ACTION);
+      return same?.dataset.do === action.dataset.do && same.dataset.arg === action.dataset.arg ? same : null;
+    }
+    const still = Math.hypot(event.clientX - x, event.clientY - y) <= STILL_PX;
+    return still && node?.isConnected && !node.contains(under) ? node : null;
+  };
   addEventListener("pointerdown", (event) => {
-    pressed = event.button === 0 ? (event.target.closest?.(ACTION) ?? null) : null;
+    const { target, button, clientX: x, clientY: y } = event;
+    press = button === 0 ? { action: target.closest?.(ACTION), node: target.closest?.(BUTTON), x, y } : null;
+    clicked = false;
   }, true);
   addEventListener("pointerup", (event) => {
-    const gone = pressed && !pressed.isConnected ? pressed.dataset : null;
-    pressed = null;
-    const same = gone && event.target.closest?.(ACTION);
-    if (!same || same.disabled || same.dataset.do !== gone.do || same.dataset.arg !== gone.arg) return;
-    const { shiftKey, ctrlKey, metaKey } = event;
-    same.dispatchEvent(new MouseEvent("click", { bubbles: true, cancelable: true, shiftKey, ctrlKey, metaKey }));
+    const node = press && heir(press, event), { shiftKey, ctrlKey, metaKey } = event;
+    press = null;
+    if (!node || node.disabled) return;
+    node.dispatchEvent(new MouseEvent("click", { bubbles: true, cancelable: true, shiftKey, ctrlKey, metaKey }));
+    clicked = true;
+  }, true);
+  addEventListener("click", (event) => {
+    if (clicked && event.isTrusted) event.stopImmediatePropagation();
   }, true);
 })();

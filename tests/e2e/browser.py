@@ -72,7 +72,8 @@ NOTES = """(() => {
         notes.push([Math.round(performance.now()), ...words].join(' '));
         if (notes.length > 60) notes.shift();
     };
-    for (const kind of ['keydown', 'pointerdown', 'change', 'focusin', 'focusout']) addEventListener(kind, (event) =>
+    const kinds = ['keydown', 'pointerdown', 'pointerup', 'click', 'change', 'focusin', 'focusout'];
+    for (const kind of kinds) addEventListener(kind, (event) =>
         note(kind, event.key ?? '', event.target.outerHTML?.slice(0, 120) ?? event.target.nodeName), true);
     const watch = setInterval(() => {
         const m = window.__viserMutable;
@@ -217,11 +218,12 @@ class EditorPage:
         self.page.wait_for_function("!document.querySelector('.mantine-Notification-closeButton')")
 
     def unfold(self, folder: str, content: Locator) -> Locator:
-        """Open a folder of a panel, unless an earlier test has left it open."""
-        self.settle()
-        if content.count() == 0 or not content.first.is_visible():
-            self.page.get_by_text(folder, exact=True).first.click()
-            content.first.wait_for()
+        """Open a folder of a panel, unless an earlier test has left it open: its arrow tells, content may come late."""
+        header = self.page.get_by_text(folder, exact=True).first
+        header.wait_for()
+        if header.locator(".tabler-icon-chevron-down").count():
+            header.click()
+        content.first.wait_for()
         return content
 
     def button(self, name: str) -> Locator:

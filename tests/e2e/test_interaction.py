@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import expect
+from playwright.sync_api import Locator, expect
 
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
@@ -204,6 +204,30 @@ def test_a_row_that_is_drawn_anew_while_it_is_pressed_is_chosen_once(
     editor.until(lambda: editor.selection == wanted, "the row under the pointer")
     editor.page.wait_for_timeout(300)
     assert editor.selection == wanted  # a second click would take it out again
+
+
+def test_what_moves_away_while_it_is_pressed_is_clicked_once(editor: EditorPage) -> None:
+    page = editor.page
+    editor.row("dining table").click()
+    editor.until(lambda: editor.selection == ("table_1",), "the table")
+    editor.settle()
+
+    def press(node: Locator) -> None:
+        node.hover()
+        page.mouse.down()
+        node.evaluate("(node) => { node.style.position = 'relative'; node.style.top = '90px'; }")
+        page.mouse.up()
+        node.evaluate("(node) => { node.style.position = ''; node.style.top = ''; }")
+
+    page.keyboard.down("Shift")
+    press(page.locator('.dio .row[data-arg="chair_1"]'))
+    page.keyboard.up("Shift")
+    editor.until(lambda: editor.selection == ("table_1", "chair_1"), "what was pressed")
+    page.wait_for_timeout(300)
+    assert editor.selection == ("table_1", "chair_1"), "a second click would take it out again"
+    editor.tab("Photo")
+    with page.expect_file_chooser():
+        press(editor.button("Upload a photo"))
 
 
 def test_only_the_selection_is_optimised_compared_and_put_back(editor: EditorPage) -> None:

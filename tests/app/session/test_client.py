@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from tests.app.small_room import make_project
+
 
 class Part:
     """A part of the page that notes when it is drawn."""
@@ -35,3 +37,13 @@ def test_handles_that_fail_leave_the_panels(client) -> None:
     client.select(("chair_1",))
     assert order == ["panel"]
     assert "handles" in client.failing
+
+
+def test_another_project_begins_with_nothing_chosen(session, client, tmp_path) -> None:
+    client.select(("chair_1",))
+    client.selected_box, client.photo_name, client.rooms = 0, "further.jpg", frozenset({"room_1"})
+    session.open_project(make_project(tmp_path / "other"))
+    assert client.selection == ()
+    assert client.selected_box is None, "a click on that row would put it out again"
+    assert client.photo_name is None
+    assert client.rooms == frozenset()
