@@ -7,6 +7,7 @@ import time
 import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import viser
 
@@ -55,7 +56,7 @@ class _Tree:
     badges: Mapping[str, tuple[str, ...]]
     others: Cursors = ()
 
-    @property
+    @cached_property
     def entry(self) -> str:
         """The row that the tab key reaches; arrows go on from there."""
         return next(iter((*self.selection[-1:], *(o.id for o in self.scene.objects))), "")

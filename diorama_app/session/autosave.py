@@ -18,8 +18,8 @@ from diorama_core.scene.types import Scene
 
 log = logging.getLogger(__name__)
 
-SETTLE_S = 0.4
-"""Quick successive edits are written once."""
+SETTLE_S = 0.15
+"""Delay so that edits are displayed first; quick successive ones are written once."""
 RETRY_S = 5.0
 """Interval between retries of a failed save."""
 
@@ -122,15 +122,6 @@ class Autosave:
                     with self._condition:
                         self._waiting[project] = unwritten.with_newer(self._waiting.get(project, Unwritten()))
 
-    def note_waiting(self) -> None:
-        """Keep pending scenes beside their projects until they are written."""
-        with self._writing:
-            with self._condition:
-                newest = dict(self._waiting)
-            for project, unwritten in newest.items():
-                if unwritten.scene is not None:
-                    self.recovery.note(project, unwritten.scene)
-
     def stop(self) -> None:
         """Write pending scenes and end the thread."""
         self.flush()
@@ -146,8 +137,6 @@ class Autosave:
                 if self._stopping:
                     return
                 self._new = False
-            self.note_waiting()
-            with self._condition:
                 self._condition.wait_for(lambda: self._stopping, SETTLE_S)
                 if self._stopping:
                     return

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 from jaxtyping import Float
@@ -13,11 +13,11 @@ from diorama_core.arrangement.surfaces import overhang_m
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.placing import places_of
 from diorama_core.errors import DioramaError
-from diorama_core.geometry.rooms import part_of_home, rooms_of_objects
+from diorama_core.geometry.rooms import rooms_of_objects, rooms_of_planes
 from diorama_core.library import taxonomy
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.scene.room_edits import floor_height
-from diorama_core.scene.types import Scene, SceneObject
+from diorama_core.scene.types import Plane, Scene, SceneObject
 
 log = logging.getLogger(__name__)
 
@@ -38,14 +38,16 @@ def problems(scene: Scene, library: ShapeLibrary, collisions: Collisions) -> Pro
         for object_id in pair:
             if COLLIDES not in found.setdefault(object_id, []):
                 found[object_id].append(COLLIDES)
-    rooms = rooms_of_objects(scene)
-    parts = {room: part_of_home(scene, [room]) for room in set(rooms.values())}
+    rooms, planes = rooms_of_objects(scene), scene.architecture.planes
+    faces: dict[str, list[Plane]] = {}
+    for plane_id, room in rooms_of_planes(scene).items():
+        faces.setdefault(room, []).append(scene.plane(plane_id))
     for item in scene.objects:
         if item.hidden:
             continue
         if floats(scene, library, item):
             found.setdefault(item.id, []).append(FLOATS)
-        if is_outside_room(parts.get(rooms.get(item.id, ""), scene), item):
+        if is_outside_room(faces.get(rooms.get(item.id, ""), planes), item):
             found.setdefault(item.id, []).append(OUTSIDE)
     return {i: tuple(sorted(words)) for i, words in found.items()}
 
@@ -82,10 +84,10 @@ def _is_beside(foot: Float[np.ndarray, 3], parent: SceneObject) -> bool:
     return bool((local[:2] > parent.size_m[:2] / 2 + BESIDE_M).any())
 
 
-def is_outside_room(scene: Scene, item: SceneObject) -> bool:
+def is_outside_room(planes: Iterable[Plane], item: SceneObject) -> bool:
     """True if an object's middle is beyond the floor's outline, or it sticks far through a wall."""
     corners = item.corners_world
-    for plane in scene.architecture.planes:
+    for plane in planes:
         within = plane.polygon.min(axis=0) - 0.2 <= item.pose.position
         within &= item.pose.position <= plane.polygon.max(axis=0) + 0.2
         across = np.abs(plane.normal) > 0.9

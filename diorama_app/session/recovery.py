@@ -1,7 +1,7 @@
 """Stores changes that are not saved to their project yet, so that a crash or a full disk does not lose them.
 
-Every change is noted at once and forgotten when the project's own file has it, less than a second later. What a later
-session finds is what an earlier one could not save. A note's name holds a digest of the scene that it follows, so that
+What cannot be saved is noted and forgotten when the project's own file has it. What a later session finds is what an
+earlier one could not save. A note's name holds a digest of the scene that it follows, so that
 no clock decides which of them is newer.
 """
 

@@ -188,8 +188,6 @@ class Viewport:
             self._ground = None
         self._ground_of = floor
         if floor is not None:
-            from diorama_app.viewport.scene_view import ground_glb  # OpenCV; opening a project does without it
-
             self._ground = self._server.scene.add_glb(
                 "/ground", ground_glb(floor), cast_shadow=False, receive_shadow=False
             )

@@ -44,8 +44,7 @@ def detach_out_of_reach(scene: Scene, library: ShapeLibrary, noise: ObservationN
         if is_out_of_reach(scene, library, item, edge, noise):
             scene = edits.detach(scene, item.id)
             reasons.append(
-                f"please check: {item.label} was seen away from {label_of(scene, edge.parent)}; what holds it is "
-                "not marked, so it stays where it was seen"
+                f"please check what holds {item.label}: it was seen away from {label_of(scene, edge.parent)}"
             )
     return scene, tuple(reasons)
 

@@ -106,7 +106,7 @@ class _Builder:
         self._meshes: dict[str, int] = {}
         names = [o.name for o in gathered.objects] + [p.name for p in gathered.planes]
         self._names = {name.casefold() for name in names}
-        self._scene_text = scene_to_json(gathered.scene, indent=None)
+        self._scene_text = scene_to_json(gathered.scene)
         self._entries = {o["id"]: o for o in json.loads(self._scene_text)["objects"]}
         self._lights: dict[str, list[ExportLight]] = {}
         for light in gathered.lights:

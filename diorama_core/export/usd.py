@@ -163,7 +163,7 @@ def _define_groups(stage: Usd.Stage, branch: str, things: Sequence[ExportObject 
 
 def _describe(prim: Usd.Prim, gathered: ExportScene) -> None:
     prim.SetDisplayName(gathered.name)
-    note(prim, "scene", scene_to_json(gathered.scene, indent=None))
+    note(prim, "scene", scene_to_json(gathered.scene))
     note(prim, "objects", json.dumps([o.id for o in gathered.objects]))
     if gathered.photo_text is not None:
         note(prim, "photo", gathered.photo_text)
@@ -198,7 +198,7 @@ def _objects(stage: Usd.Stage, gathered: ExportScene) -> None:
     if not gathered.objects:
         return
     _define_groups(stage, "Objects", gathered.objects)
-    entries = {o["id"]: o for o in json.loads(scene_to_json(gathered.scene, indent=None))["objects"]}
+    entries = {o["id"]: o for o in json.loads(scene_to_json(gathered.scene))["objects"]}
     for item in gathered.objects:
         path = object_path(item)
         xform = UsdGeom.Xform.Define(stage, path)

@@ -248,12 +248,12 @@ class Plane(ArrayValue):
         length = np.linalg.norm(n)
         return n / length if length > 1e-12 else UP_WORLD.copy()
 
-    @property
+    @cached_property
     def centre(self) -> Float[np.ndarray, "3"]:
         """Mean of the corners."""
         return self.polygon.mean(axis=0)
 
-    @property
+    @cached_property
     def offset(self) -> float:
         """d of the plane equation `normal . p = d`."""
         return float(self.normal @ self.centre)
@@ -443,8 +443,19 @@ class Scene:
         return {o.id: o for o in self.objects}
 
     @cached_property
+    def _planes_by_id(self) -> dict[str, Plane]:
+        return {p.id: p for p in reversed(self.architecture.planes)}
+
+    @cached_property
     def _support_of(self) -> dict[str, Support]:
         return {s.child: s for s in self.supports}
+
+    @cached_property
+    def _children_of(self) -> dict[str, tuple[str, ...]]:
+        children: dict[str, list[str]] = {}
+        for support in self.supports:
+            children.setdefault(support.parent, []).append(support.child)
+        return {parent: tuple(ids) for parent, ids in children.items()}
 
     def object(self, object_id: str) -> SceneObject:
         """The object with this id; raises `KeyError` when there is none."""
@@ -456,14 +467,11 @@ class Scene:
 
     def plane(self, plane_id: str) -> Plane:
         """The plane with this id; raises `KeyError` when there is none."""
-        for plane in self.architecture.planes:
-            if plane.id == plane_id:
-                return plane
-        raise KeyError(plane_id)
+        return self._planes_by_id[plane_id]
 
     def has_plane(self, plane_id: str) -> bool:
         """Whether a plane with this id exists."""
-        return any(p.id == plane_id for p in self.architecture.planes)
+        return plane_id in self._planes_by_id
 
     def support_of(self, object_id: str) -> Support | None:
         """The edge that holds the object up, if any."""
@@ -471,4 +479,4 @@ class Scene:
 
     def children_of(self, parent_id: str) -> tuple[str, ...]:
         """Ids of the objects directly held up by an object or plane."""
-        return tuple(s.child for s in self.supports if s.parent == parent_id)
+        return self._children_of.get(parent_id, ())

@@ -58,24 +58,15 @@ class ProjectMachine(RuleBasedStateMachine):
         self.document.open(scene)
         self.past, self.future = [_label(scene)], list[str]()
 
-    def _meeting_faults(self, done: str) -> None:
-        """Note the scene as it is, and save it where asked."""
+    def _meeting_faults(self) -> None:
+        """Save the scene as it is."""
         self.pending = _label(self.document.scene)
         self.saver.save_soon(self.project, self.document.scene)
-        try:
-            with self.faults.injected():
-                self.saver.note_waiting()
-                if not self.faults.full:
-                    self.acknowledged = self.pending
-                if done == "save":
-                    self.saver.flush()
-                    assert bool(self.saver.trouble) == self.faults.full
-        except Killed:
-            self._start_again()
+        self.save_what_waits()
 
     @rule()
     def save_what_waits(self) -> None:
-        """What the thread does again while something is not saved."""
+        """What the thread does, and does again while something is not saved."""
         try:
             with self.faults.injected():
                 self.saver.flush()
@@ -85,27 +76,27 @@ class ProjectMachine(RuleBasedStateMachine):
             assert not self.saver.trouble or self.faults.full
             self.acknowledged = self.acknowledged if self.faults.full else self.pending
 
-    @rule(done=st.sampled_from(["note", "save"]))
-    def edit(self, done: str) -> None:
+    @rule()
+    def edit(self) -> None:
         self.number += 1
         self.document.commit("rename", edits.rename(self.document.scene, "chair_1", f"edit {self.number}"))
         self.past.append(f"edit {self.number}")
         self.future.clear()
-        self._meeting_faults(done)
+        self._meeting_faults()
 
     @precondition(lambda self: len(self.past) > 1)
-    @rule(done=st.sampled_from(["note", "save"]))
-    def undo(self, done: str) -> None:
+    @rule()
+    def undo(self) -> None:
         self.document.undo()
         self.future.append(self.past.pop())
-        self._meeting_faults(done)
+        self._meeting_faults()
 
     @precondition(lambda self: self.future)
-    @rule(done=st.sampled_from(["note", "save"]))
-    def redo(self, done: str) -> None:
+    @rule()
+    def redo(self) -> None:
         self.document.redo()
         self.past.append(self.future.pop())
-        self._meeting_faults(done)
+        self._meeting_faults()
 
     @rule(full=st.booleans())
     def fill_or_empty_the_disk(self, full: bool) -> None:
