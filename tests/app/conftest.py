@@ -49,7 +49,9 @@ def session(server: viser.ViserServer, tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(redraws, "EVERY_S", 0.0)  # panels are drawn at once
     monkeypatch.setattr(redraws, "SHARE", 1e9)
     made = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
-    made.checker.look_at = lambda scene: None  # its thread would post to the UI thread
+    # Tests do the UI thread's work: what other threads post to it would draw at the same time.
+    made.checker.look_at = lambda scene: None
+    made._look_again = lambda: None
     made.open_project(make_project(tmp_path / "projects" / "demo"))
     yield made
     made.close()
