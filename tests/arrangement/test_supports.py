@@ -58,7 +58,7 @@ def test_a_change_is_told_in_words_and_by_terms(room: Room) -> None:
     cup = room.put("cup_21", (0.0, 0.5, at("cup_21", TABLE_TOP)), on="wall_2", relation="mounted on")
     scene = room.scene(camera=looking_north())
     found = with_decided_supports(scene, LIBRARY, MEASURED, SupportEvidence.of(scene, {cup: {table: 1.0}}))
-    assert found.notes == (f"support changed: {cup} rests on {table}, not the wall",)
+    assert found.notes == (f"support changed: {cup} rests on {table}, not wall 3",)
     assert found.choices[cup].shares["seen below"] > 0.0
 
 
