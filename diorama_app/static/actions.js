@@ -32,7 +32,6 @@
   addEventListener("pointerdown", (event) => {
     const { target, button, clientX: x, clientY: y } = event;
     press = button === 0 ? { action: target.closest?.(ACTION), node: target.closest?.(BUTTON), x, y } : null;
-    clicked = false;
   }, true);
   addEventListener("pointerup", (event) => {
     const node = press && heir(press, event), { shiftKey, ctrlKey, metaKey } = event;
@@ -40,6 +39,7 @@
     if (!node || node.disabled) return;
     node.dispatchEvent(new MouseEvent("click", { bubbles: true, cancelable: true, shiftKey, ctrlKey, metaKey }));
     clicked = true;
+    setTimeout(() => { clicked = false; }, 100); // the browser's own comes at once or never
   }, true);
   addEventListener("click", (event) => {
     if (clicked && event.isTrusted) event.stopImmediatePropagation();
