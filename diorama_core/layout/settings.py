@@ -82,6 +82,15 @@ class LayoutSettings:
     """Normals with a smaller z are of walls."""
     max_cord_m: float = 1.5
     """A lamp that was seen farther below its ceiling does not hang from it."""
+    hidden: float = 0.2
+    """Weight of a hidden end of a height, against one that was seen."""
+    min_extent_m: float = 0.02
+    """Least apparent height."""
+    usual: float = 0.05
+    """Share of an apparent height up to which disagreements count by their square."""
+    height_rounds: int = 4
+    height_rounding_m: float = 1e-4
+    """Smaller changes of a height or a place are rounding."""
     shrink: float = 0.9
     """Factor on a stuck object's footprint, each attempt."""
     min_certainty: float = 0.1

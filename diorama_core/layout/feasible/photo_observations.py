@@ -74,26 +74,34 @@ class PhotoObservations:
         least[i] = np.minimum(least[i], most[i])
         return replace(self, most=most, least=least)
 
+    def fix_heights(self, members: Int[np.ndarray, " m"], scale: Float[np.ndarray, " n"]) -> PhotoObservations:
+        """These observations with the heights of some objects decided: the scales of all along their own up axes."""
+        least, most = self.least.copy(), self.most.copy()
+        least[members, 2] = most[members, 2] = scale[members]
+        return replace(self, least=least, most=most)
+
     def no_smaller(self, scale: Float[np.ndarray, "n 3"], extents: Bool[np.ndarray, "n 3"]) -> PhotoObservations:
         """These observations with some extents no smaller than they are."""
         least = np.where(extents, np.maximum(self.least, scale), self.least)
         return replace(self, least=least, most=np.maximum(self.most, least))
 
     def replace_objects(self, members: Int[np.ndarray, " m"], other: PhotoObservations) -> PhotoObservations:
-        """These observations with some objects as others have them."""
+        """These observations with some objects as others have them, but for what decided their heights."""
 
         def rows(values: np.ndarray, theirs: np.ndarray) -> np.ndarray:
             changed = values.copy()
             changed[members] = theirs[members]
             return changed
 
+        least, most = rows(self.least, other.least), rows(self.most, other.most)
+        least[:, 2], most[:, 2] = self.least[:, 2], self.most[:, 2]
         return replace(
             self,
             bounds_px=rows(self.bounds_px, other.bounds_px),
             hidden=rows(self.hidden, other.hidden),
             observed=rows(self.observed, other.observed),
-            least=rows(self.least, other.least),
-            most=rows(self.most, other.most),
+            least=least,
+            most=most,
             loads=tuple(other.loads[i] if i in members else tracked for i, tracked in enumerate(self.loads)),
             tracked=tuple(other.tracked[i] if i in members else tracked for i, tracked in enumerate(self.tracked)),
             contradicted=rows(self.contradicted, other.contradicted),

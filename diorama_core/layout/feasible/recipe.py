@@ -18,6 +18,7 @@ from jaxtyping import Float
 
 from diorama_core.artefacts import LayoutReport, PhotoDisagreement
 from diorama_core.geometry.sat import place_bodies
+from diorama_core.layout.feasible.heights import joint_heights
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
 from diorama_core.layout.feasible.reach import reaching_ceilings, reaching_loads
 from diorama_core.layout.feasible.relocate import cheapest_spot, relocate
@@ -131,6 +132,8 @@ class FeasibleRecipe:
         if not self.sizes_reasoned:
             wanted = reaching_ceilings(wanted, observations)
             observations = self._observations(wanted, camera, visible) or observations
+        if self.depth_measured:
+            wanted, observations = joint_heights(wanted, observations)
         eye = camera.position if self.sizes_reasoned else None
         wider = reaching_loads(wanted, exact_structure(wanted, self._rays(wanted, camera), observations, eye=eye), eye)
         grown = np.flatnonzero((wider.scale != wanted.scale).any(axis=1))
