@@ -321,9 +321,8 @@ def supporter_name(scene: Scene, any_id: str) -> str:
     if scene.has_object(any_id):
         return scene.object(any_id).label
     plane = scene.plane(any_id)
-    same = scene.architecture.by_role(plane.role)
-    number = f" {[p.id for p in same].index(plane.id) + 1}" if len(same) > 1 else ""
-    return _(plane.role) + number
+    number = scene.architecture.number_of(plane)
+    return _(plane.role) if number is None else f"{_(plane.role)} {number}"
 
 
 def _move(client: Client, item: SceneObject, pose: Pose, field: str) -> None:

@@ -1,8 +1,8 @@
 """Stores changes that are not saved to their project yet, so that a crash or a full disk does not lose them.
 
 What cannot be saved is noted and forgotten when the project's own file has it. What a later session finds is what an
-earlier one could not save. A note's name holds a digest of the scene that it follows, so that
-no clock decides which of them is newer.
+earlier one could not save. A note's name holds a digest of the scene that it follows, so that no clock decides which of
+them is newer.
 """
 
 from __future__ import annotations

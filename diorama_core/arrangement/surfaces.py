@@ -364,12 +364,12 @@ def complete_edges(
 
 
 def label_of(scene: Scene, any_id: str) -> str:
-    """What people call an object or a plane; walls are numbered."""
+    """What people call an object or a plane, with its number where there are several of its role."""
     if scene.has_object(any_id):
         return scene.object(any_id).label
-    role = scene.plane(any_id).role
-    same = [p.id for p in scene.architecture.by_role(role)]
-    return f"{role} {same.index(any_id) + 1}" if len(same) > 1 else f"the {role}"
+    plane = scene.plane(any_id)
+    number = scene.architecture.number_of(plane)
+    return f"the {plane.role}" if number is None else f"{plane.role} {number}"
 
 
 def closes_cycle(edges: Mapping[str, Support | None], child: str, parent: str) -> bool:

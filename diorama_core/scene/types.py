@@ -269,6 +269,11 @@ class Architecture:
         """Planes of one role."""
         return tuple(p for p in self.planes if p.role == role)
 
+    def number_of(self, plane: Plane) -> int | None:
+        """Which plane of its role it is, from 1; None for the only one."""
+        ids = [p.id for p in self.by_role(plane.role)]
+        return ids.index(plane.id) + 1 if len(ids) > 1 else None
+
     @property
     def floor(self) -> Plane | None:
         """The floor, if any; of a home's the lowest."""
