@@ -16,7 +16,7 @@ from diorama_core.arrangement.support_hypotheses import ObservationNoise
 from diorama_core.arrangement.surfaces import is_soft, misfit, object_surfaces
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import part_overlaps
-from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.types import Candidate, Scene, SceneObject
 
@@ -73,14 +73,15 @@ def _overlaps(scene: Scene, library: ShapeLibrary) -> dict[tuple[str, str], floa
 
 
 def _better(scene: Scene, library: ShapeLibrary, noise: ObservationNoise, name: str) -> tuple[float, Scene]:
-    """The gain (negative, in logarithms) and the scene of the best shape for an object and those of its shape."""
+    """The gain (negative, in logarithms) and the scene of the best shape of its kind for an object and those alike."""
     members = next(group for group in _objects_by_shape(scene) if any(o.id == name for o in group))
     if any(o.locked for o in members):
         return 0.0, scene
+    kind = record_of(library, members[0].shape_id).category
     common = set.intersection(*({c.shape_id for c in o.candidates} for o in members))
     now = _cost(scene, library, noise, members)
     options = [(0.0, "", scene)]
-    for shape in sorted(common - {members[0].shape_id}):
+    for shape in sorted(s for s in common - {members[0].shape_id} if record_of(library, s).category == kind):
         other = scene
         for o in members:
             other = _replace_shape(other, o, _candidate_of(o, shape))

@@ -3,18 +3,24 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from diorama_core.arrangement.support_hypotheses import MEASURED
 from diorama_core.layout.clear_shapes import clear_shapes
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import part_overlaps
 from diorama_core.scene.types import Candidate, Pose, Scene
-from diorama_core.synthesis.layout_rooms import box_library
+from diorama_core.synthesis.layout_rooms import COMPOUNDS, BoxLibrary, block
 from tests.layout.small_rooms import Room
 
-LIBRARY = box_library()
-CLOSED, OPEN = "cabinet_10", "table_0"
+LIBRARY = BoxLibrary((*COMPOUNDS, block("table", 0.9, 1.4, 0.74, top=True)))
+CLOSED, OPEN = "table_26", "table_0"
 """One is solid, the other has room between its legs."""
+
+
+@pytest.fixture
+def room() -> Room:
+    return Room(LIBRARY)
 
 
 def candidate(shape_id: str, score: float) -> Candidate:
@@ -71,3 +77,12 @@ def test_nothing_that_is_clear_changes(room: Room) -> None:
     room.put(CLOSED, (0.0, 1.0, 0.4), candidates=(candidate(CLOSED, 0.1), candidate(OPEN, 0.9)))
     scene = room.scene()
     assert clear_shapes(scene, LIBRARY, MEASURED) == (scene, ())
+
+
+def test_a_thing_stays_of_its_kind(room: Room) -> None:
+    closed = "cabinet_10"
+    height = LIBRARY.shape(closed).size_m[2]
+    candidates = (candidate(closed, 0.5), candidate(OPEN, 0.4))
+    room.put(closed, (0.0, 1.0, height / 2), id="desk", candidates=candidates)
+    room.put("box_24", (0.0, 1.0, 0.15), id="computer")
+    assert clear_shapes(room.scene(), LIBRARY, MEASURED) == (room.scene(), ())
