@@ -77,7 +77,8 @@ def containing_room(
         scene = _lower_wall_confidence(scene, standing)
     for wall in scene.architecture.by_role("wall"):
         if not wall.is_seen:
-            scene = _move_wall_behind_objects(scene, wall.id, standing)
+            against = _standing_against(scene, wall.id) if objects_measured else []
+            scene = _move_wall_behind_objects(scene, wall.id, standing, against)
         scene = _lengthen_wall(scene, wall.id)
     prints = [p for o in standing if len(p := _footprint(scene, o)) >= 3]
     return _with_ceiling(_with_floor_under(scene, prints))
@@ -241,11 +242,20 @@ def _is_between_ends(item: SceneObject, wall: Plane) -> bool:
     return bool(spread.min() < float(item.pose.position @ along) < spread.max())
 
 
-def _move_wall_behind_objects(scene: Scene, wall_id: str, standing: list[SceneObject]) -> Scene:
-    """The wall at the backs of what hangs on it, behind everything whose middle is in front of it; objects stay."""
+def _move_wall_behind_objects(
+    scene: Scene, wall_id: str, standing: Sequence[SceneObject], against: Sequence[SceneObject]
+) -> Scene:
+    """The wall at the backs of what is on it, behind everything whose middle is in front of it; objects stay.
+
+    Args:
+        scene: with the wall, which was not seen.
+        wall_id: of the wall.
+        standing: everything on the floor.
+        against: of that what surely stands against the wall.
+    """
     wall = scene.plane(wall_id)
-    # Of what was seen, something hangs on the wall: it says where the wall is, within the room that it leaves.
-    backs = [float((o.corners_world @ wall.normal).min()) - wall.offset for o in _hanging(scene, wall_id)]
+    # Of what was seen, something touches the wall: it says where the wall is, within the room that it leaves.
+    backs = [_back(o, wall) for o in (*_hanging(scene, wall_id), *against)]
     inward = float(np.median(backs)) if backs else 0.0
     deepest = min((_wall_gap_m(o, wall, inward) for o in standing), default=inward)
     if inward == 0.0 and deepest == inward:
@@ -259,6 +269,10 @@ def _move_wall_behind_objects(scene: Scene, wall_id: str, standing: list[SceneOb
 
 def _hanging(scene: Scene, wall_id: str) -> list[SceneObject]:
     return [scene.object(s.child) for s in scene.supports if s.parent == wall_id and s.relation == "mounted on"]
+
+
+def _standing_against(scene: Scene, wall_id: str) -> list[SceneObject]:
+    return [scene.object(s.child) for s in scene.supports if wall_id in s.adheres_to]
 
 
 def _lengthen_wall(scene: Scene, wall_id: str) -> Scene:

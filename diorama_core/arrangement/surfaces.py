@@ -237,7 +237,8 @@ def reaches(item: SceneObject, surface: RestingSurface) -> bool:
     corners = item.corners_world
     gap = abs(float((corners @ surface.normal).min()) - surface.level)
     wide = max(float(np.ptp(corners @ axis)) for axis in plane_axes(surface.normal))
-    return gap <= OUT_OF_REACH_M and overhang_m(surface, item.pose.position) <= max(BESIDE_M, BESIDE_SHARE * wide)
+    beside = overhang_m(surface, item.pose.position) / max(BESIDE_M, BESIDE_SHARE * wide)
+    return float(np.hypot(gap / OUT_OF_REACH_M, beside)) <= 1.0
 
 
 def _too_wide(size: Float[np.ndarray, "3"], surface: RestingSurface) -> float:

@@ -63,18 +63,18 @@ class BoxOutliner:
         return cls(path, sha256_of(path)[:8])
 
     def outlines(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Sequence[Box]) -> list[Float32[np.ndarray, "h2 w2"]]:
-        """For every box how likely each pixel of its rectangle in the photo (`pixels_of`) is the object's, 0 to 1.
+        """For every box how likely each pixel of its rectangle in the photo (`pixels_of`) is the object's, 0 to 1."""
+        shares = self.windows(rgb, boxes)
+        return [warp_to_photo(share, box, box, rgb.shape[:2]) for share, box in zip(shares, boxes, strict=True)]
 
-        Every window is looked at as it is and mirrored.
-        """
-        outlines: list[Float32[np.ndarray, "h2 w2"]] = []
+    def windows(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Sequence[Box]) -> list[Float32[np.ndarray, "s s"]]:
+        """For every box how likely each cell of its window is the object's, 0 to 1; looked at as it is and mirrored."""
+        shares: list[Float32[np.ndarray, "s s"]] = []
         for first in range(0, len(boxes), _BATCH):
-            some = boxes[first : first + _BATCH]
-            windows = np.stack([window(rgb, box) for box in some])
+            windows = np.stack([window(rgb, box) for box in boxes[first : first + _BATCH]])
             both = self._logits(windows) + self._logits(np.ascontiguousarray(windows[..., ::-1]))[..., ::-1]
-            shares = expit(both / 2).astype(np.float32)
-            outlines += [warp_to_photo(share, box, rgb.shape[:2]) for share, box in zip(shares, some, strict=True)]
-        return outlines
+            shares += list(expit(both / 2).astype(np.float32))
+        return shares
 
     def _logits(self, windows: Float32[np.ndarray, "b 4 s s"]) -> Float32[np.ndarray, "b s s"]:
         session = self.pool.get(self.graph)
@@ -120,11 +120,18 @@ def resample(image: Shaped[np.ndarray, "h w *c"], box: Box) -> Shaped[np.ndarray
 
 
 def warp_to_photo(
-    share: Float32[np.ndarray, "s s"], box: Box, photo_shape: tuple[int, int]
+    share: Float32[np.ndarray, "s s"], box: Box, part: Box, photo_shape: tuple[int, int]
 ) -> Float32[np.ndarray, "h2 w2"]:
-    """A window's numbers at the pixels of its box (`pixels_of`), interpolated."""
+    """Numbers of a box's window at the pixels of a part of the photo (`pixels_of`), interpolated.
+
+    Args:
+        share: a number for each cell of the window.
+        box: whose window it is, in photo pixels.
+        part: likewise; beyond the window its border is continued.
+        photo_shape: rows and columns.
+    """
     left, top, per_x, per_y = _grid(box)
-    rows, columns = pixels_of(box, photo_shape)
+    rows, columns = pixels_of(part, photo_shape)
     size = (columns.stop - columns.start, rows.stop - rows.start)
     to_window = np.array(
         [

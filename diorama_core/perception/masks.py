@@ -9,14 +9,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.artefacts import Box, DetectedObject, Inputs, LabelledBox
-from diorama_core.models.outliner import BoxOutliner, own_outliner, pixels_of
+from diorama_core.models.outliner import BoxOutliner, own_outliner, pixels_of, warp_to_photo
+from diorama_core.perception.drawn_boxes import ends_of_objects
 from diorama_core.progress import Progress
 
 _MIN_SHARE = 0.02
@@ -49,10 +50,14 @@ class EmbeddedMasks:
         return outline_objects(inputs, self._segment_boxes, progress)
 
     def _segment_boxes(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: list[LabelledBox], progress: Progress) -> Outlined:
+        drawn, shape = [box.box for box in boxes], (rgb.shape[0], rgb.shape[1])
+        windows = self.outliner.windows(rgb, drawn)
         results: Outlined = []
-        for done, box in enumerate(boxes):
+        for done, (box, share, ends) in enumerate(
+            zip(drawn, windows, ends_of_objects(drawn, windows, shape), strict=True)
+        ):
             progress.report(done / len(boxes), f"Outlining objects ({done + 1} of {len(boxes)})")
-            results.append(self.segment_box(rgb, box.box))
+            results.append((*self._segment(rgb, warp_to_photo(share, box, ends, shape), ends), ends))
         return results
 
     def segment_box(self, rgb: UInt8[np.ndarray, "h w 3"], box: Box) -> tuple[Bool[np.ndarray, "h w"], float]:
@@ -60,7 +65,11 @@ class EmbeddedMasks:
 
         Where nothing can be told apart, the mask is the box and the confidence low.
         """
-        (probability,) = self.outliner.outlines(rgb, [box])
+        return self._segment(rgb, self.outliner.outlines(rgb, [box])[0], box)
+
+    def _segment(
+        self, rgb: UInt8[np.ndarray, "h w 3"], probability: Float32[np.ndarray, "h2 w2"], box: Box
+    ) -> tuple[Bool[np.ndarray, "h w"], float]:
         rows, columns = pixels_of(box, rgb.shape[:2])
         inside = refine_mask(np.ascontiguousarray(rgb[rows, columns]), probability, self.crop_px)
         if inside.mean() < _MIN_SHARE:
@@ -100,8 +109,8 @@ def refine_mask(
     return np.asarray(cv2.resize(foreground, (width, height), interpolation=cv2.INTER_LINEAR) >= 0.5)
 
 
-Outlined = list[tuple[Bool[np.ndarray, "h w"], float]]
-"""A mask and its confidence for every box."""
+Outlined = list[tuple[Bool[np.ndarray, "h w"], float, Box]]
+"""A mask, its confidence and where the object ends, for every box."""
 
 
 def outline_objects(
@@ -117,8 +126,8 @@ def outline_objects(
     first_free = max((mask_id for mask_id, _, _ in given), default=0) + 1
     detected = [(i, box, mask, 1.0) for i, box, mask in given]
     detected += [
-        (first_free + n, box, mask, confidence)
-        for n, (box, (mask, confidence)) in enumerate(zip(boxed, segmented, strict=True))
+        (first_free + n, replace(box, box=at), mask, confidence)
+        for n, (box, (mask, confidence, at)) in enumerate(zip(boxed, segmented, strict=True))
     ]
     ids = _ids([box.category for _, box, _, _ in detected])
     progress.report(1.0, "Objects outlined")

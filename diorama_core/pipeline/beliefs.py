@@ -12,6 +12,7 @@ from diorama_core.arrangement.supports import DecidedSupports
 from diorama_core.artefacts import Inputs, ObjectGeometry, PosedCandidates
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.library.taxonomy import UNKNOWN, having
+from diorama_core.perception.drawn_boxes import drawn_box
 from diorama_core.pipeline.scene_steps import FinishedScene
 from diorama_core.scene.belief import CERTAIN_FRONT, Belief, Shares
 from diorama_core.scene.room_edits import KNOWN_LENGTH_SIGMA
@@ -77,18 +78,18 @@ def with_beliefs(
         settings: how probabilities are made.
     """
     scene, headings = finished.scene, {p.object_id: p.headings for p in posed}
-    named = {b.box for b in inputs.boxes if b.category != UNKNOWN.name}
-    scores = {b.box: b.score for b in inputs.boxes if b.guessed and b.score < 1.0}
     feet = {c.object_id for c in geometry.cuboids if c.foot_seen}
 
     def with_belief(item: SceneObject) -> SceneObject:
         choice, edge = supports.choices.get(item.id), scene.support_of(item.id)
+        drawn = None if item.box_px is None else drawn_box(inputs.boxes, item.box_px)
+        is_named = drawn is not None and drawn.category != UNKNOWN.name
         holders = {} if choice is None or edge is None else choice.probabilities
         sigma = _distance_sigma(scene, item, noise, settings, foot_seen=item.id in feet)
         belief = Belief(
-            1.0 if item.box_px not in scores else presence_of(scores[item.box_px], settings),
+            presence_of(drawn.score, settings) if drawn is not None and drawn.guessed and drawn.score < 1.0 else 1.0,
             _sort_alternatives(
-                _kinds(item, library, 1.0 if item.box_px in named else settings.kind),
+                _kinds(item, library, 1.0 if is_named else settings.kind),
                 record_of(library, item.shape_id).category,
                 settings,
             ),

@@ -16,6 +16,7 @@ from jaxtyping import Bool, Float, UInt8
 from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, ObjectGeometry, PosedCandidates
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.perception.drawn_boxes import drawn_box
 from diorama_core.pipeline.fallback import with_usable_networks
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.presets import stages_for
@@ -132,7 +133,7 @@ def _reconstruct(
     photo = evaluate(stages, {"given": inputs}, ("architecture",), runner, progress.part(0.0, 0.5))
     known = next((o for o in photo["objects"] if o.id == object_id), None)
     outlined = next((o for o in photo["outlined_objects"] if o.id == object_id), None)
-    if known is not None and outlined is not None and _says(outlined, box, mask):
+    if known is not None and outlined is not None and _says(photo["inputs"], outlined, box, mask):
         built = evaluate(stages, photo, ("posed",), runner, progress.part(0.5, 1.0))
         candidates = next((p for p in built["posed"] if p.object_id == object_id and p.candidates), None)
         if candidates is not None:
@@ -144,9 +145,10 @@ def _reconstruct(
     return _build_object(stages, scene, library, detected, artefacts, posed, as_built=False)
 
 
-def _says(known: DetectedObject, box: LabelledBox, mask: Bool[np.ndarray, "h w"] | None) -> bool:
+def _says(inputs: Inputs, known: DetectedObject, box: LabelledBox, mask: Bool[np.ndarray, "h w"] | None) -> bool:
     """Whether a box, its name and its outline are what the build knew of the object."""
-    same_box = known.box == box.box and known.category == box.category and known.label == box.label
+    drawn = drawn_box(inputs.boxes, known.box)
+    same_box = drawn is not None and (drawn.box, drawn.category, drawn.label) == (box.box, box.category, box.label)
     return same_box and (mask is None or np.array_equal(mask, known.mask))
 
 

@@ -23,7 +23,7 @@ def test_a_windows_numbers_return_to_their_places(x: float, y: float, w: float, 
     rows, columns = np.mgrid[: shape[0], : shape[1]].astype(np.float32)
     smooth = np.cos(columns / 160) + np.sin(rows / 120)
     rows_in, columns_in = pixels_of(box, shape)
-    back = warp_to_photo(resample(smooth, box), box, shape)
+    back = warp_to_photo(resample(smooth, box), box, box, shape)
     there = smooth[rows_in, columns_in]
     assert back.shape == there.shape
     cell = 1.5 * max(box[2] - box[0], box[3] - box[1], 1.0) / SIDE

@@ -138,4 +138,4 @@ def test_the_exported_outliner_answers_as_the_network_did(tmp_path: Path, rng: n
     with torch.no_grad():
         share = torch.sigmoid((network(seen) + network(seen.flip(3)).flip(2)) / 2)[0].numpy()
     (found,) = BoxOutliner.of(tmp_path).outlines(rgb, [box])
-    np.testing.assert_allclose(found, warp_to_photo(share, box, (90, 130)), atol=1e-4)
+    np.testing.assert_allclose(found, warp_to_photo(share, box, box, (90, 130)), atol=1e-4)

@@ -192,11 +192,9 @@ def _nearness(p: np.ndarray, observed: np.ndarray, eye: np.ndarray, most: float)
 
 def _reach_floor(problem: Problem, walk: Walk, i: int) -> None:
     """Stretch a door to the floor, keeping its top where it was seen; lower it where that would change it too much."""
-    height = float(_size(problem, walk, i)[2])
+    height, most = float(_size(problem, walk, i)[2]), problem.settings.max_stretch
     top = float(walk.p[i][2]) + height / 2
-    factor = (top - problem.floor_m) / height
-    if problem.settings.smallest_shrink <= factor <= 1.0 / problem.settings.smallest_shrink:
-        walk.scale[i, 2] *= factor
+    walk.scale[i, 2] *= np.clip((top - problem.floor_m) / height, 1.0 / most, most)
     walk.p[i] = [*walk.p[i][:2], problem.floor_m + float(_size(problem, walk, i)[2]) / 2]
 
 

@@ -67,7 +67,8 @@ class MaskRefinement:
         if scene.camera is None or all(item is None for item in detected_objects):
             return scene, report
         seen = [observed.object(name).pose for name in problem.ids]
-        priors = [PosePrior(scene.camera.position, pose, self.precision, self.settings) for pose in seen]
+        tall = [replace(o, scale=np.array([*o.scale[:2], z])) for o, z in zip(seen, problem.scale[:, 2], strict=True)]
+        priors = [PosePrior(scene.camera.position, pose, self.precision, self.settings) for pose in tall]
         picture = self._picture(scene, scene.camera, problem, detected_objects)
         none = np.zeros(4)
         boxes = np.array([none if o is None else o.box for o in detected_objects], dtype=np.float64)

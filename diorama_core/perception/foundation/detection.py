@@ -164,7 +164,8 @@ class PromptedMasks:
             mask = prompted.mask & box_mask(rgb.shape[:2], _widen_box(box, rgb.shape[1], rgb.shape[0]))
             whole = box_mask(rgb.shape[:2], box.box)
             lost = mask.sum() < _MIN_SHARE * whole.sum()
-            results.append((whole, LOST_CONFIDENCE) if lost else (mask, max(prompted.quality, LOST_CONFIDENCE)))
+            sure = LOST_CONFIDENCE if lost else max(prompted.quality, LOST_CONFIDENCE)
+            results.append((whole if lost else mask, sure, box.box))
         return results
 
 

@@ -14,6 +14,7 @@ from diorama_core.geometry.casting import camera_rays
 from diorama_core.geometry.projection import NEAR_M
 from diorama_core.library.taxonomy import Category, category
 from diorama_core.models.seen_depth import SeenDepth
+from diorama_core.perception.drawn_boxes import BORDER_SHARE
 from diorama_core.perception.metrology.priors import SizeMode, size_modes
 from diorama_core.perception.metrology.problem import UNTOLD, View
 from diorama_core.perception.metrology.settings import SETTINGS, BoxObservationSettings, MetrologySettings
@@ -147,7 +148,7 @@ def gather(
     extent = np.tile(boxes[:, 2:] - boxes[:, :2], 2)
     sigma = settings.observed.share_sigma * extent + settings.observed.pixel_sigma * max(width, height) / 640
     border = np.array([0.0, 0.0, width, height])
-    truncated = np.abs(boxes - border) <= 0.006 * max(width, height)
+    truncated = np.abs(boxes - border) <= BORDER_SHARE * max(width, height)
     categories = tuple(category(o.category) for o in objects)
     covered = _find_covered_edges(boxes, height, settings.observed)
     unseen = truncated | covered.any(axis=1).reshape(-1, 4)
