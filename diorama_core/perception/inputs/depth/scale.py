@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
@@ -68,12 +68,7 @@ class DepthUnit:
 
 
 def unit_of(evidence: ScaleEvidence | None, stated: float) -> DepthUnit:
-    """The unit of a map.
-
-    Args:
-        evidence: how many metres a unit is, by the picture; None where it says nothing.
-        stated: units per metre that the container has.
-    """
+    """The unit of a map whose container states so many units per metre; `evidence` is None where nothing is seen."""
     if evidence is None or (evidence.things < MIN_THINGS and not evidence.heights_agree):
         return DepthUnit(stated, _doubtful_height(evidence, stated))
     seen = -evidence.log_scale
@@ -190,38 +185,27 @@ def focal_score(fit: PlaneFit) -> tuple[float, float]:
     return float(score[best]), float(FOCAL_GRID[best])
 
 
-def size_scatter(
-    depth: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"], focal: float, boxes: Sequence[LabelledBox]
-) -> float:
+def size_scatter(depth: Float[np.ndarray, "h w"], focal: float, boxes: Sequence[LabelledBox]) -> float:
     """The median deviation of the logarithms of things' sizes from their median; 0 for fewer than three things.
 
-    Args:
-        depth: z in camera, in the map's unit.
-        valid: where it was measured.
-        focal: focal length in shares of the picture's longer side.
-        boxes: of named things, in shares of the longer side.
+    Lengths are as `scale_evidence` has them.
     """
-    logs = np.array([v for box in boxes for v in _log_scales(depth, valid, focal, box)])
+    logs = np.array([v for box in boxes for v in _log_scales(depth, focal, box)])
     return float(np.median(np.abs(logs - np.median(logs)))) if len(logs) >= 6 else 0.0
 
 
 def scale_evidence(
-    depth: Float[np.ndarray, "h w"],
-    valid: Bool[np.ndarray, "h w"],
-    fit: PlaneFit,
-    focal: float,
-    boxes: Sequence[LabelledBox],
+    depth: Float[np.ndarray, "h w"], fit: PlaneFit, focal: float, boxes: Sequence[LabelledBox]
 ) -> ScaleEvidence | None:
     """How long a map's unit is in metres; None where neither named things nor a floor say so.
 
     Args:
-        depth: along the optical axis, in an unknown unit, of the photo's proportions.
-        valid: where it was measured.
+        depth: along the optical axis, in an unknown unit, of the photo's proportions; 0 where it was not measured.
         fit: its planes.
         focal: over the longer side.
         boxes: in shares of the longer side of the map, x and y from its upper left.
     """
-    logs = [v for box in boxes for v in _log_scales(depth, valid, focal, box)]
+    logs = [v for box in boxes for v in _log_scales(depth, focal, box)]
     height, room = _heights(fit, focal)
     terms = []
     if logs:
@@ -261,15 +245,15 @@ def _heights(fit: PlaneFit, focal: float) -> tuple[float | None, float | None]:
     return floor, None if floor is None or not len(ceilings) else floor + float(ceilings.max())
 
 
-def _log_scales(depth: np.ndarray, valid: np.ndarray, focal: float, box: LabelledBox) -> list[float]:
+def _log_scales(depth: np.ndarray, focal: float, box: LabelledBox) -> list[float]:
     """Logarithms of a thing's usual height and width over what the map says of them."""
     if box.category == UNKNOWN.name:
         return []
     side, (height, width) = max(depth.shape), depth.shape
     x1, y1, x2, y2 = (v * side for v in box.box)
     inner_x, inner_y = 0.2 * (x2 - x1), 0.2 * (y2 - y1)
-    part = np.s_[int(y1 + inner_y) : int(y2 - inner_y) + 1, int(x1 + inner_x) : int(x2 - inner_x) + 1]
-    values = depth[part][valid[part]]
+    values = depth[int(y1 + inner_y) : int(y2 - inner_y) + 1, int(x1 + inner_x) : int(x2 - inner_x) + 1]
+    values = values[values > 0]
     if len(values) < 9:
         return []
     distance = float(np.percentile(values, NEAR_PERCENTILE))

@@ -229,12 +229,12 @@ class TestDepth:
 def test_turned_maps_are_told_and_turned(how: str, inverse: bool) -> None:
     values = 1 / DEPTH if inverse else DEPTH
     over = apply_turn(values, how)
-    assert find_turn(over, over > 0, PHOTO) == how
+    assert find_turn(over, PHOTO) == how
     np.testing.assert_array_equal(apply_turn(over, how), values)
 
 
 def test_right_maps_and_plain_photos_say_nothing() -> None:
-    assert find_turn(DEPTH, DEPTH > 0, PHOTO) is None
-    assert find_turn(DEPTH, DEPTH > 0, np.full_like(PHOTO, 90)) is None
+    assert find_turn(DEPTH, PHOTO) is None
+    assert find_turn(DEPTH, np.full_like(PHOTO, 90)) is None
     holes = DEPTH * (np.random.default_rng(1).random(DEPTH.shape) > 0.9)
-    assert find_turn(holes, holes > 0, PHOTO) is None
+    assert find_turn(holes, PHOTO) is None
