@@ -37,22 +37,20 @@ class RawDepth:
     """The numbers of a depth map as they are stored."""
 
     values: Shaped[np.ndarray, "h w"]
-    is_float: bool
     notes: tuple[str, ...] = ()
     stated_kind: str | None = None
     """"inverse" where the array's name says so."""
 
-
-def is_npy(content: DepthContent) -> bool:
-    """Whether it is an array of numpy."""
-    return content.source.data.startswith(b"\x93NUMPY")
+    @property
+    def is_float(self) -> bool:
+        """Whether they are metres by themselves; whole numbers have a unit of their own."""
+        return self.values.dtype.kind == "f"
 
 
 def read_npy(content: DepthContent) -> RawDepth:
     """An array, after its header was found to promise no more than the file holds."""
     array = _array(content.source.data, content.source.name)
-    values, notes = one_channel(array, content.source.name)
-    return RawDepth(values, values.dtype.kind == "f", notes)
+    return RawDepth(*one_channel(array, content.source.name))
 
 
 def is_npz(content: DepthContent) -> bool:
@@ -85,7 +83,7 @@ def read_npz(content: DepthContent) -> RawDepth:
     values, notes = one_channel(maps[key], name)
     kind = "inverse" if key in _RELATIVE_NAMES else None
     values, more = _apply_masks(values, read, key)
-    return RawDepth(values, values.dtype.kind == "f", (*notes, *more), kind)
+    return RawDepth(values, (*notes, *more), kind)
 
 
 def _array(data: bytes, name: str) -> np.ndarray:

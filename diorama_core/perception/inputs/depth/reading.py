@@ -117,11 +117,11 @@ def read_depth(
     size = (photo.photo.width, photo.photo.height)
     raw = _raw(source, photo)
     trusted, unsure = without_unsure(source, raw.values)
-    trusted, upended = _positive(trusted, is_float=raw.is_float)
+    trusted, upended = _positive(trusted)
     values, laid = photo.frame.align_map(source.name, "depth", trusted)
     if options.encoding == "sunrgbd" and not raw.is_float:
         values = _unrotate_bits(values)
-    valid, voids = find_measured_pixels(values, is_float=raw.is_float)
+    valid, voids = find_measured_pixels(values)
     if valid.sum() <= MIN_COVERAGE * valid.size:
         raise InputError(f"{source.name}: the depth is empty or nearly so; leave it out or choose another file")
     with np.errstate(invalid="ignore", over="ignore"):
@@ -210,11 +210,9 @@ def _to_metres(numbers: Float32[np.ndarray, "h w"], per_metre: float) -> Float32
     return numbers if per_metre == 1.0 else (numbers / np.float64(per_metre)).astype(np.float32)
 
 
-def _positive(
-    values: Shaped[np.ndarray, "h w"], *, is_float: bool
-) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
+def _positive(values: Shaped[np.ndarray, "h w"]) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
     """Depth of cameras that look along -z (OpenGL, Blender) as distance before them."""
-    if not is_float or np.mean(values < 0) < MOSTLY or np.mean(values > 0) > 1.0 - MOSTLY:
+    if values.dtype.kind != "f" or np.mean(values < 0) < MOSTLY or np.mean(values > 0) > 1.0 - MOSTLY:
         return values, ()
     return -values, ("the depth is negative, as of a camera that looks along -z; its sign was changed",)
 
