@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Shaped
-from numpy.lib import format as npy
 
 from diorama_core.errors import InputError
+from diorama_core.perception.inputs.arrays import array_header
 from diorama_core.perception.inputs.depth.channels import one_channel
 from diorama_core.perception.inputs.depth.voids import only_sure
 from diorama_core.perception.inputs.source import Source
@@ -90,8 +90,7 @@ def _array(data: bytes, name: str) -> np.ndarray:
     """An array of numbers; the header is not trusted to allocate more than the file holds."""
     stream = io.BytesIO(data)
     try:
-        version = npy.read_magic(stream)
-        shape, _, dtype = npy.read_array_header_1_0(stream) if version == (1, 0) else npy.read_array_header_2_0(stream)
+        shape, dtype = array_header(stream)
         if dtype.kind not in "fiub":
             raise InputError(f"{name}: depth in .npy must be floats in metres or whole numbers, this holds {dtype}")
         count = math.prod(shape)
@@ -99,7 +98,7 @@ def _array(data: bytes, name: str) -> np.ndarray:
             raise InputError(f"{name}: {count / 1e6:.0f} megapixels of depth are too many; save the photo's size")
         if count * dtype.itemsize > len(data):
             raise ValueError("fewer numbers than the header states")
-        return np.asarray(np.load(io.BytesIO(data), allow_pickle=False))
+        return np.asarray(np.load(stream, allow_pickle=False))
     except InputError:
         raise
     except Exception as error:  # a damaged header raises almost anything

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import io
-import math
 import zipfile
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool
-from numpy.lib import format as npy
 
 from diorama_core.errors import InputError
+from diorama_core.perception.inputs.arrays import array_header
 from diorama_core.perception.inputs.masks.pictures import (
     MAX_STACKED,
     MaskMap,
@@ -44,27 +43,16 @@ class MaskContent:
     photo_size: tuple[int, int]
 
     @property
+    def folder(self) -> Folder:
+        """The folder, of what is one."""
+        assert isinstance(self.given, Folder)
+        return self.given
+
+    @property
     def source(self) -> Source:
         """The file, of what is no folder."""
         assert isinstance(self.given, Source)
         return self.given
-
-
-def _is_folder(content: MaskContent) -> bool:
-    return isinstance(content.given, Folder)
-
-
-def _is_array(content: MaskContent) -> bool:
-    return content.source.data.startswith((b"\x93NUMPY", b"PK\x03\x04"))
-
-
-def _is_json(content: MaskContent) -> bool:
-    return content.source.data.lstrip()[:1] in (b"[", b"{")
-
-
-def _folder(content: MaskContent) -> MaskMap:
-    assert isinstance(content.given, Folder)
-    return read_folder_of_masks(content.given)
 
 
 MASK_FORMS: tuple[Form[MaskContent, MaskMap], ...] = (
@@ -72,21 +60,21 @@ MASK_FORMS: tuple[Form[MaskContent, MaskMap], ...] = (
         "folder or zip of masks",
         "SAM (amg.py), SAM 3D Objects, Grounded-SAM",
         "one file an object, white on black (JPEG too) or cut out of the photo; smaller ones in front of larger",
-        _is_folder,
-        _folder,
+        lambda content: isinstance(content.given, Folder),
+        lambda content: read_folder_of_masks(content.folder),
     ),
     Form(
         "numpy array (.npy, .npz)",
         "Mask R-CNN, SAM, scripts",
         "ids (h, w), or true and false (n, h, w)",
-        _is_array,
+        lambda content: content.source.data.startswith((b"\x93NUMPY", b"PK\x03\x04")),
         lambda content: read_arrays(content.source),
     ),
     Form(
         "segments in JSON",
         "COCO, SAM, LabelMe, Label Studio's brush, VIA, Supervisely, Roboflow",
         "run lengths, plain or packed, bitmaps and polygons, of the photo's file name",
-        _is_json,
+        lambda content: content.source.data.lstrip()[:1] in (b"[", b"{"),
         lambda content: read_segments(content.source, content.photo_name, content.photo_size),
     ),
     Form(
@@ -209,11 +197,8 @@ def _array_of_several(archive: zipfile.ZipFile, names: list[str], name: str) -> 
 def _load_array(data: bytes) -> np.ndarray:
     """An array whose header promises no more than the file holds."""
     stream = io.BytesIO(data)
-    version = npy.read_magic(stream)
-    shape, _, dtype = npy.read_array_header_1_0(stream) if version == (1, 0) else npy.read_array_header_2_0(stream)
-    if dtype.hasobject or math.prod(shape) * dtype.itemsize > len(data):
-        raise ValueError("fewer numbers than the header states")
-    return np.asarray(np.load(io.BytesIO(data), allow_pickle=False))
+    array_header(stream, len(data))
+    return np.asarray(np.load(stream, allow_pickle=False))
 
 
 def _is_whole(array: np.ndarray) -> bool:

@@ -245,37 +245,21 @@ class PhotoFile:
     notes: tuple[str, ...] = ()
 
 
-def _is_raw(source: Source) -> bool:
-    return raw_kind(source.data) is not None
-
-
-def _is_heif(source: Source) -> bool:
-    return is_heif(source.data)
-
-
-def _is_anything(source: Source) -> bool:
-    return True
-
-
-def _raw(source: Source) -> PhotoFile:
-    return PhotoFile(*largest_picture(source, raw_kind(source.data) or "camera raw"))
-
-
 PHOTO_FORMS: tuple[Form[Source, PhotoFile], ...] = (
     Form(
         "camera raw (DNG, CR2, CR3, NEF, ARW, RAF, RW2, ORF)",
         "cameras, phones",
         "the largest picture within; developed where that is a thumbnail and `rawpy` is installed (`diorama[raw]`)",
-        _is_raw,
-        _raw,
+        lambda source: raw_kind(source.data) is not None,
+        lambda source: PhotoFile(*largest_picture(source, raw_kind(source.data) or "camera raw")),
     ),
-    Form("HEIC, HEIF", "iPhones, Samsung", "the main picture, upright", _is_heif, PhotoFile),
+    Form("HEIC, HEIF", "iPhones, Samsung", "the main picture, upright", lambda source: is_heif(source.data), PhotoFile),
     Form(
         "JPEG, PNG, WebP, AVIF, TIFF, BMP, GIF, PPM, JPEG 2000",
         "everything else",
         "turned by its EXIF; 10, 12 and 14 bits stretched; plain borders cut off; of several pages the largest; "
         "a 360 degree photo alone is [a whole room](many-photos.md#one-360-degree-photo); sweep panoramas are refused",
-        _is_anything,
+        lambda _: True,
         PhotoFile,
     ),
 )
