@@ -17,8 +17,7 @@ import numpy as np
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.opening import Opened
-from diorama_core.importing.part import Part
-from diorama_core.importing.parts import shape_parts
+from diorama_core.importing.parts import Part, shape_parts
 from diorama_core.importing.room import room_of, supports_of
 from diorama_core.importing.storeys import rooms_of_floors
 from diorama_core.library.ingest.frames import UNKNOWN

@@ -19,8 +19,7 @@ from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.gltf import read_marked_gltf
 from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.measured_types import MeasuredRoom
-from diorama_core.importing.part import Part
-from diorama_core.importing.parts import parts_of_gltf, parts_of_usd, split_scene
+from diorama_core.importing.parts import Part, parts_of_gltf, parts_of_usd, split_scene
 from diorama_core.importing.point_cloud import PointCloud, points_of_mesh
 from diorama_core.importing.point_files import POINT_FORMS, PointForm, read_points
 from diorama_core.importing.roomplan import read_room_plan

@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,6 @@ from jaxtyping import Float
 
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.marked import MarkedFile
-from diorama_core.importing.part import Part
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.usd_meshes import usd_scene
 from diorama_core.library.ingest.usd_stage import Z_UP, open_stage, usd_errors, world_of
@@ -27,6 +27,45 @@ TOUCH_M = 0.03
 UPRIGHT = 0.999
 HUGE_M, USUAL_M = 100.0, 60.0
 SUBUNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One object of a file."""
+
+    name: str
+    scene: trimesh.Scene
+    """Geometry in the world: +Z up, metres."""
+    M_world: Float[np.ndarray, "4 4"]
+    """The node's frame to the world."""
+    key: str | None = None
+    """Equal for copies of one geometry; None where unknown."""
+    yaw_rad: float = 0.0
+    """How far its own axes are turned about up: shapes are taken in along their own axes."""
+    front: str | None = None
+    """Own axis that its front looks along, where the file says so."""
+    category: str | None = None
+    room: str | None = None
+    """Name of the room whose floor it is, where the file has rooms; None for everything else."""
+
+    @cached_property
+    def whole(self) -> trimesh.Trimesh:
+        """All geometry as one mesh."""
+        return self.scene.to_geometry()
+
+    @property
+    def turn(self) -> Float[np.ndarray, "3 3"]:
+        """Own axes to the world's."""
+        c, s = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
+        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+    @property
+    def local_scene(self) -> trimesh.Scene:
+        """The geometry along the part's own axes."""
+        scene, T = self.scene.copy(), np.eye(4)
+        T[:3, :3] = self.turn.T
+        scene.apply_transform(T)
+        return scene
 
 
 def parts_of_gltf(path: Path, unit_m: float | None = None) -> tuple[tuple[Part, ...], tuple[str, ...]]:

@@ -25,10 +25,17 @@ from jaxtyping import Bool, Float
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
 from diorama_core.importing.array_clouds import is_array_cloud, is_float_dump, read_array_cloud, read_float_dump
-from diorama_core.importing.cloud_units import likely_unit
 from diorama_core.importing.data_set_frames import DATA_SET_FORMS
 from diorama_core.importing.depth_frames import FRAME_FORMS, UP_Y, UP_Z, FrameForm, cloud_of_frames
-from diorama_core.importing.point_cloud import MAX_POINTS, MIN_POINTS, PointCloud, points_of_mesh, to_metres, unit_note
+from diorama_core.importing.point_cloud import (
+    MAX_POINTS,
+    MIN_POINTS,
+    PointCloud,
+    likely_unit,
+    points_of_mesh,
+    to_metres,
+    unit_note,
+)
 from diorama_core.io.bounded import megabytes, read_bytes, shorten
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.file_heads import FileHead, head_of

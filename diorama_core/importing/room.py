@@ -13,7 +13,7 @@ from shapely.geometry import Point, Polygon
 from shapely.geometry.polygon import orient
 from shapely.ops import unary_union
 
-from diorama_core.importing.part import Part
+from diorama_core.importing.parts import Part
 from diorama_core.importing.room_by_shape import shell_planes, slab_role
 from diorama_core.library.taxonomy import category
 from diorama_core.scene.types import Plane, PlaneRole, Scene, SceneObject, Support

@@ -15,7 +15,7 @@ from jaxtyping import Float
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.ops import unary_union
 
-from diorama_core.importing.part import Part
+from diorama_core.importing.parts import Part
 from diorama_core.scene.types import Plane, PlaneRole
 
 SHELL_M = 2.0

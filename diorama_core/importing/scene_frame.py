@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.importing.cloud_units import likely_unit
+from diorama_core.importing.point_cloud import likely_unit
 from diorama_core.library.ingest.given import AXES, axis_vector
 from diorama_core.library.ingest.models import RawModel
 

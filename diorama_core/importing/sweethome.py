@@ -23,7 +23,7 @@ from jaxtyping import Float
 
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.importing.part import Part
+from diorama_core.importing.parts import Part
 from diorama_core.io.bounded import shorten
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.text import parse_xml

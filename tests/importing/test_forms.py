@@ -17,8 +17,7 @@ from diorama_core.export import export_scene
 from diorama_core.importing.depth_frames import FRAME_FORMS, cloud_of_frames
 from diorama_core.importing.forms import SCENE_FORMS, SUFFIXES, SceneParts, open_form, scan_in
 from diorama_core.importing.measured_cloud import measure_cloud
-from diorama_core.importing.part import Part
-from diorama_core.importing.parts import join_flat_parts
+from diorama_core.importing.parts import Part, join_flat_parts
 from diorama_core.importing.point_cloud import PointCloud
 from diorama_core.importing.point_files import is_text_cloud, read_points, read_splat_ply
 from diorama_core.importing.room import room_of

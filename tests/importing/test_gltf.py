@@ -14,7 +14,7 @@ from diorama_core.errors import InputError
 from diorama_core.export import export_scene
 from diorama_core.export.gathering import ExportOptions
 from diorama_core.importing.gltf import read_marked_gltf
-from diorama_core.importing.restore import restore
+from diorama_core.importing.opening import open_marked
 from diorama_core.scene.types import Architecture, Candidate, Pose, Scene
 from tests.export import gltf_reader
 from tests.primitives import PrimitiveLibrary, furnished_room
@@ -88,7 +88,7 @@ def node(document: dict, name: str) -> dict:
 def back(path):
     marked = read_marked_gltf(path)
     assert marked is not None
-    return restore(marked)
+    return open_marked(marked)
 
 
 def test_an_untouched_file_gives_the_same_scene(tmp_path) -> None:
@@ -212,7 +212,7 @@ def test_a_selection_deletes_nothing(tmp_path) -> None:
     path = written(tmp_path, scene, options=ExportOptions(only=frozenset({"t", "b"})))
     marked = read_marked_gltf(path)
     assert marked is not None
-    assert restore(marked).scene == scene
+    assert open_marked(marked).scene == scene
 
 
 def test_pictures_on_planes_come_back(tmp_path) -> None:

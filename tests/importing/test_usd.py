@@ -8,7 +8,7 @@ import trimesh
 
 from diorama_core.errors import InputError
 from diorama_core.export import export_scene
-from diorama_core.importing.restore import restore
+from diorama_core.importing.opening import open_marked
 from diorama_core.importing.scene_import import import_scene
 from diorama_core.importing.usd import read_marked_usd
 from tests.importing.test_gltf import LIBRARY, edited_room
@@ -20,7 +20,7 @@ pxr = pytest.importorskip("pxr", reason="needs the extra [usd]")
 def back(path):
     marked = read_marked_usd(path)
     assert marked is not None
-    return restore(marked)
+    return open_marked(marked)
 
 
 @pytest.mark.parametrize("kind", ["usda", "usdc", "usdz"])
