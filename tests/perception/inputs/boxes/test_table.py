@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.boxes import data_sets, lines, lists, markup, tools
 from diorama_core.perception.inputs.boxes.dictionaries import box_of, word_of
 from diorama_core.perception.inputs.boxes.reading import read_boxes
 from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parse_box_text
@@ -39,30 +38,15 @@ COCO = {
         for k, b in enumerate(BOXES)
     ],
 }
-STUDIO = [
-    {
-        "data": {"image": "photo.png"},
-        "annotations": [
-            {
-                "result": [
-                    {
-                        "original_width": 400,
-                        "original_height": 300,
-                        "type": "rectanglelabels",
-                        "value": {
-                            "x": b[0] / 4,
-                            "y": b[1] / 3,
-                            "width": (b[2] - b[0]) / 4,
-                            "height": (b[3] - b[1]) / 3,
-                            "rectanglelabels": [b[4]],
-                        },
-                    }
-                    for b in BOXES
-                ]
-            }
-        ],
+STUDIO_RESULTS = rows(
+    lambda x1, y1, x2, y2, w: {
+        "original_width": 400,
+        "original_height": 300,
+        "type": "rectanglelabels",
+        "value": {"x": x1 / 4, "y": y1 / 3, "width": (x2 - x1) / 4, "height": (y2 - y1) / 3, "rectanglelabels": [w]},
     }
-]
+)
+STUDIO = [{"data": {"image": "photo.png"}, "annotations": [{"result": STUDIO_RESULTS}]}]
 VIA = {
     "photo.png1234": {
         "filename": "photo.png",
@@ -109,22 +93,17 @@ CREATE_ML = {
         }
     ),
 }
+AMAZON = rows(
+    lambda x1, y1, x2, y2, _: {
+        "BoundingBox": {"Left": x1 / 400, "Top": y1 / 300, "Width": (x2 - x1) / 400, "Height": (y2 - y1) / 300}
+    }
+)
 REKOGNITION = {
-    "Labels": [
-        {
-            "Name": "x",
-            "Instances": rows(
-                lambda x1, y1, x2, y2, w: {
-                    "Name": w,
-                    "BoundingBox": {
-                        "Left": x1 / 400, "Top": y1 / 300, "Width": (x2 - x1) / 400, "Height": (y2 - y1) / 300,
-                    },
-                }
-            ),
-        }
-    ]
-}  # fmt: skip
-COLUMNS = {"boxes": [list(b[:4]) for b in BOXES], "labels": ["chair", "sofa"], "scores": [0.9, 0.8]}
+    "Labels": [{"Name": "x", "Instances": [{"Name": b[4], **i} for b, i in zip(BOXES, AMAZON, strict=True)]}]
+}
+BY_KIND = {"Labels": [{"Name": b[4], "Instances": [i]} for b, i in zip(BOXES, AMAZON, strict=True)]}
+CORNERS_ONLY = [list(b[:4]) for b in BOXES]
+COLUMNS = {"boxes": CORNERS_ONLY, "labels": ["chair", "sofa"], "scores": [0.9, 0.8]}
 TABLE = "filename,width,height,class,xmin,ymin,xmax,ymax\n" + "\n".join(
     rows(lambda x1, y1, x2, y2, w: f"photo.png,400,300,{w},{x1},{y1},{x2},{y2}")
 )
@@ -136,32 +115,16 @@ NAMED = rows(lambda x1, y1, x2, y2, w: {"bbox": [x1, y1, x2, y2], "class": w})
 CORNERS = rows(lambda x1, y1, x2, y2, w: {"topLeft": {"x": x1, "y": y1}, "bottomRight": {"x": x2, "y": y2}, "name": w})
 TF_ROWS = {"detection_boxes": rows(lambda a, b, c, d, _: [b / 300, a / 400, d / 300, c / 400]),
            "detection_class_entities": ["chair", "sofa"]}  # fmt: skip
-BY_KIND = {
-    "Labels": rows(
-        lambda a, b, c, d, w: {
-            "Name": w,
-            "Instances": [{"BoundingBox": {"Left": a / 400, "Top": b / 300, "Width": (c - a) / 400,
-                                           "Height": (d - b) / 300}}],
-        }
-    )
-}  # fmt: skip
 MANIFEST = {
     "bb": {"annotations": rows(lambda a, b, c, d, w: {"left": a, "top": b, "width": c - a, "height": d - b,
                                                       "class_id": len(w) - 4})},
     "bb-metadata": {"class-map": {"1": "chair", "0": "sofa"}},
 }  # fmt: skip
+LABEL_IDS = [{"type": "bbox", "label_id": k, "bbox": sized(*b[:4])} for k, b in enumerate(BOXES)]
 DATUMARO = {
     "categories": {"label": {"labels": [{"name": "chair"}, {"name": "sofa"}]}},
-    "items": [
-        {
-            "id": "photo",
-            "annotations": [
-                {"type": "bbox", "label_id": k, "bbox": sized(*b[:4])} for k, b in enumerate(BOXES)
-            ],
-            "format": "xywh",
-        }
-    ],
-}  # fmt: skip
+    "items": [{"id": "photo", "annotations": LABEL_IDS, "format": "xywh"}],
+}
 VIA_TABLE = "filename,region_shape_attributes,region_attributes\n" + "\n".join(
     rows(
         lambda a, b, c, d, w: (
@@ -184,7 +147,7 @@ FORMS = [
     ("list of boxes", [{"image": "a/b.png", **r} for r in OTHERS] + [{"image": "c/photo.png", **r} for r in NAMED]),
     ("columns of boxes", TF_ROWS),
     ("columns of boxes", [{"file": "b.png", "boxes": [[1, 1, 9, 9]], "labels": ["bed"]},
-                          {"file": "photo.png", "boxes": [list(b[:4]) for b in BOXES], "labels": ["chair", "sofa"]}]),
+                          {"file": "photo.png", **COLUMNS}]),
     ("object with a list of boxes", BY_KIND),
     ("object with a list of boxes", MANIFEST),
     ("object with a list of boxes", DATUMARO),
@@ -202,7 +165,7 @@ FORMS = [
     ("LabelMe", LABELME),
     ("Label Studio", STUDIO),
     ("VGG Image Annotator", VIA),
-    ("list of boxes", rows(lambda x1, y1, x2, y2, w: {"bbox": [x1, y1, x2, y2], "class": w})),
+    ("list of boxes", NAMED),
     ("list of boxes", rows(lambda a, b, c, d, w: {"label": w, "box": {"xmin": a, "ymin": b, "xmax": c, "ymax": d}})),
     ("list of boxes", rows(lambda a, b, c, d, w: {"box_2d": [b / 0.3, a / 0.4, d / 0.3, c / 0.4], "label": w})),
     (
@@ -221,30 +184,9 @@ FORMS = [
 ]  # fmt: skip
 
 
-RECOGNISED_BY = {
-    "COCO data set": data_sets.is_data_set,
-    "LabelMe": tools.is_labelme,
-    "Label Studio": tools.is_label_studio,
-    "VGG Image Annotator": tools.is_via,
-    "list of boxes": lists.is_list,
-    "columns of boxes": lists.is_columns,
-    "object with a list of boxes": lists.is_wrapped,
-    "Pascal VOC": markup.is_voc,
-    "CVAT": markup.is_cvat,
-    "table of boxes": lines.is_table,
-    "words and numbers": lines.is_words,
-    "boxes by name": lists.is_keyed,
-}
-
-
-@pytest.mark.parametrize("name", RECOGNISED_BY)
-def test_each_form_knows_its_own_files(name: str) -> None:
-    for written, document in FORMS:
-        text = parse_box_text(Source(content(document), "file"), "photo.png", SIZE)
-        if written == name:
-            assert RECOGNISED_BY[name](text)
-    for strange in ("[]", "{}", "<a/>", "one line of text", "[[1]]", '[{"a": 1}]', '{"shapes": 1}'):
-        assert not RECOGNISED_BY[name](parse_box_text(Source(strange.encode(), "file"), "photo.png", SIZE))
+@pytest.mark.parametrize("strange", ["{}", "<a/>", "one line of text", "[[1]]", '[{"a": 1}]', '{"shapes": 1}'])
+def test_no_form_knows_strange_files(strange: str) -> None:
+    assert form_of(BOX_FORMS, parse_box_text(Source(strange.encode(), "file"), "photo.png", SIZE)) is None
 
 
 def content(document: object) -> bytes:
@@ -364,28 +306,22 @@ def test_one_annotation_in_anybody_s_words() -> None:
     assert box_of({"name": "x"}, "") is None
 
 
-def words_of(document: object) -> list[str]:
+@pytest.mark.parametrize(
+    ("document", "words"),
+    [
+        ({"boxes": CORNERS_ONLY, "labels": ["chair(0.45)", "sofa 0.87"]}, ["chair", "sofa"]),
+        ([{"bbox": CORNERS_ONLY[0], "class": "chair (.5)"}, {"bbox": CORNERS_ONLY[1], "class": "sofa 2"}],
+         ["chair", "sofa 2"]),
+        ([{"value": 0, "label": "background"}, *({"label": b[4], "box": list(b[:4])} for b in BOXES)],
+         ["chair", "sofa"]),
+        ({"pred_boxes": CORNERS_ONLY, "pred_classes": [0, 2], "class_names": ["chair", "lamp", "sofa"]},
+         ["chair", "sofa"]),
+    ],
+    ids=["scores behind words", "scores and numbers", "the background is none", "numbers of classes"],
+)  # fmt: skip
+def test_words_of_boxes(document: object, words: list[str]) -> None:
     source = Source(json.dumps(document).encode(), "a.json")
-    return [b.label for b in read_boxes(source, decoded(*SIZE))[0]]
-
-
-def test_words_without_the_scores_behind_them() -> None:
-    boxes = [list(b[:4]) for b in BOXES]
-    assert words_of({"boxes": boxes, "labels": ["chair(0.45)", "sofa 0.87"]}) == ["chair", "sofa"]
-    assert words_of([{"bbox": b, "class": w} for b, w in zip(boxes, ("chair (.5)", "sofa 2"), strict=True)]) == [
-        "chair",
-        "sofa 2",
-    ]
-
-
-def test_the_background_in_a_list_of_boxes_is_none() -> None:
-    rows = [{"value": 0, "label": "background"}, *({"label": b[4], "box": list(b[:4])} for b in BOXES)]
-    assert words_of(rows) == ["chair", "sofa"]
-
-
-def test_class_names_beside_class_numbers_of_another_count() -> None:
-    document = {"pred_boxes": [list(b[:4]) for b in BOXES], "pred_classes": [0, 2]}
-    assert words_of({**document, "class_names": ["chair", "lamp", "sofa"]}) == ["chair", "sofa"]
+    assert [b.label for b in read_boxes(source, decoded(*SIZE))[0]] == words
 
 
 def test_bounds_of_cvat_s_masks() -> None:

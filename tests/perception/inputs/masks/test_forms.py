@@ -16,7 +16,7 @@ from PIL import Image
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.masks.pictures import paint_masks, read_picture, without_void
+from diorama_core.perception.inputs.masks.pictures import paint_masks, without_void
 from diorama_core.perception.inputs.masks.reading import read_masks
 from diorama_core.perception.inputs.masks.segments import decode_runs, is_markup, read_segments
 from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent, read_arrays, read_folder_of_masks
@@ -333,8 +333,6 @@ def test_forms_and_refusals() -> None:
             found(given)
     with pytest.raises(InputError, match="different sizes"):
         paint_masks([np.ones((2, 2), bool), np.ones((3, 2), bool)], "m", "masks")
-    with pytest.raises(InputError, match="exact colours"):
-        read_picture(Source(encoded(Image.fromarray(RGB), "JPEG"), "m.jpg"))
 
 
 def test_pieces_within_an_object_are_its_own_and_others_are_specks() -> None:
