@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from diorama_core.errors import InputError
 from diorama_core.export import export_scene
 from diorama_core.importing.depth_frames import FRAME_FORMS, cloud_of_frames
-from diorama_core.importing.forms import SCENE_FORMS, SUFFIXES, SceneParts, open_form, scan_in
+from diorama_core.importing.forms import SceneParts, open_form, scan_in
 from diorama_core.importing.measured_cloud import measure_cloud
 from diorama_core.importing.parts import Part, join_flat_parts
 from diorama_core.importing.point_cloud import PointCloud
@@ -29,6 +29,7 @@ from diorama_core.progress import Progress
 from diorama_core.scene.types import Plane
 from tests.importing.roomplan_files import write_json
 from tests.importing.scans import DEPTH, HEIGHT, WIDTH, cameras, room_meshes, room_points, write_app_scan
+from tests.importing.stages import write_stage
 from tests.primitives import PrimitiveLibrary, furnished_room
 
 
@@ -206,31 +207,7 @@ def test_an_obj_of_a_room_is_put_upright_and_in_metres(tmp_path: Path) -> None:
     assert any("centimetres" in note for note in notes)
 
 
-def test_the_table_has_names_and_endings() -> None:
-    assert {".glb", ".usdz", ".sh3d", ".json", ".ply", ".xyz", ".pcd", ".zip"} <= set(SUFFIXES)
-    assert all(form.name and form.files and form.becomes for form in SCENE_FORMS)
-    assert PointCloud(np.zeros((1, 3)), None).notes == ()
-
-
 UNIT_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048}
-
-
-def stage_of(path: Path, meshes: dict[str, trimesh.Trimesh]) -> None:
-    """Meshes in a stage that calls its lengths metres."""
-    pxr = pytest.importorskip("pxr", reason="usd-core is not installed (optional extra 'usd')")
-    from pxr import Usd, UsdGeom
-
-    assert pxr is not None
-    stage = Usd.Stage.CreateNew(str(path))
-    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
-    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
-    stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/World").GetPrim())
-    for name, mesh in meshes.items():
-        prim = UsdGeom.Mesh.Define(stage, f"/World/{name}")
-        prim.CreatePointsAttr(mesh.vertices.tolist())
-        prim.CreateFaceVertexCountsAttr([3] * len(mesh.faces))
-        prim.CreateFaceVertexIndicesAttr(mesh.faces.reshape(-1).tolist())
-    stage.Save()
 
 
 @pytest.mark.parametrize("unit", UNIT_M)
@@ -246,7 +223,8 @@ def test_a_given_unit_is_believed(suffix: str, unit: str, tmp_path: Path) -> Non
         whole = trimesh.util.concatenate(list(room_parts().values()))
         expected = 2.0 * whole.extents
         if suffix in (".usda", ".usdc"):
-            stage_of(path, meshes)
+            pytest.importorskip("pxr", reason="usd-core is not installed (optional extra 'usd')")
+            write_stage(path, meshes)
         elif suffix == ".ply":
             whole.apply_scale(factor).export(path)
         else:
