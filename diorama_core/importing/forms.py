@@ -234,11 +234,7 @@ SUFFIXES = (
 
 
 def scan_in(parts: Sequence[Part]) -> PointCloud | None:
-    """The points of a scan, where the parts of a file are one; None where they are modelled.
-
-    Args:
-        parts: in the world, +Z up, metres.
-    """
+    """The points of a scan, where the parts of a file, in the world, are one; None where they are modelled."""
     meshes = [p.whole for p in parts]
     if not meshes:
         return None

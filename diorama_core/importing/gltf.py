@@ -139,10 +139,7 @@ def _object_nodes(nodes: tuple[_Node, ...], document: Json) -> tuple[ObjectNode,
 def _to_stored(document: Json, row: Json, bounds: Any) -> Float[np.ndarray, "4 4"]:
     """The shape's frame to that of a node's mesh: programs that store positions as integers stretch the node instead.
 
-    Args:
-        document: The file's JSON.
-        row: The node that shows the mesh.
-        bounds: Least and largest corner of the mesh in the shape's frame, as it was written.
+    Bounds are the least and largest corner of the mesh in the shape's frame, as it was written.
     """
     out = np.eye(4)
     primitives = document["meshes"][row["mesh"]]["primitives"] if "mesh" in row else []

@@ -181,10 +181,7 @@ def _band(points: Float[np.ndarray, "n 3"], top_m: float) -> Float[np.ndarray, "
 def _outline(points: Float[np.ndarray, "n 3"], top_m: float, *, walls_alone: bool) -> Polygon:
     """The room seen from above: cells between wall lines that were scanned.
 
-    Args:
-        points: the floor at 0.
-        top_m: height of the room.
-        walls_alone: whether neither floor nor ceiling were scanned: all cells are of the room then.
+    All cells are of the room where walls alone were scanned, without floor and ceiling.
     """
     lines = [_lines(points, top_m, axis) for axis in (0, 1)]
     plan = points[:, :2]

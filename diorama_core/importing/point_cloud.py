@@ -90,11 +90,7 @@ def to_metres(cloud: PointCloud) -> PointCloud:
 
 
 def without_floaters(points: Float[np.ndarray, "n 3"]) -> tuple[Float[np.ndarray, "m 3"], tuple[str, ...]]:
-    """The points without those that float alone: reflections, dust, and what networks dream up; and the note.
-
-    Args:
-        points: finite, in any unit.
-    """
+    """Finite points without those that float alone: reflections, dust, and what networks dream up; and the note."""
     some = points[:: max(1, len(points) // ASKED)]
     nearest = cKDTree(points).query(some, k=[2])[0] if len(points) > 1 else np.zeros(1)
     cell = ALONE * float(np.median(nearest))
@@ -154,12 +150,7 @@ UNITS = (
 
 
 def likely_unit(points: Float[np.ndarray, "n 3"], up: Float[np.ndarray, "3"] | None) -> Unit:
-    """The unit in which the points are most likely a room.
-
-    Args:
-        points: in that unit.
-        up: against gravity, along an axis; None where it is not known.
-    """
+    """The unit in which the points are most likely a room; `up` is against gravity, along an axis."""
     low, high = np.quantile(points, [0.005, 0.995], axis=0)
     extent = np.maximum(high - low, 1e-9)
     if up is not None:

@@ -236,11 +236,7 @@ SETTINGS = RugSettings()
 
 
 def find_rugs(points: Float[np.ndarray, "n 3"]) -> list[Float[np.ndarray, "_ 3"]]:
-    """Points of each rug, the largest first.
-
-    Args:
-        points: of the room, away from walls; the floor at 0, +Z up.
-    """
+    """Points of each rug, the largest first, among those of a room away from its walls, its floor at 0."""
     low = _free(points)
     below = low[low[:, 2] <= 0, 2]
     if len(below) < SETTINGS.min_points:
@@ -291,11 +287,7 @@ def _is_rug(piece: Float[np.ndarray, "n 3"], floor: Float[np.ndarray, "m 3"], no
 
 
 def apart_from_tops(points: Float[np.ndarray, "n 3"]) -> list[Float[np.ndarray, "_ 3"]]:
-    """The points of a thing, and those of each thing that lies on it; all of them together where nothing does.
-
-    Args:
-        points: +Z up, along the room's axes.
-    """
+    """The points of a thing, and those of each thing that lies on it; all of them together where nothing does."""
     low, high = points.min(axis=0), points.max(axis=0)
     cells = np.floor((points - low) / TOP_CELL_M).astype(int)
     counts = cells.max(axis=0) + 1

@@ -61,12 +61,7 @@ UNSEEN_WEIGHT = 0.5
 
 
 def with_scanned_kinds(room: MeasuredRoom, library: ShapeLibrary, *, look: bool = True) -> MeasuredRoom:
-    """The room, the kinds of its scanned boxes as likely as everything says.
-
-    Args:
-        room: boxes without points keep their kinds.
-        library: whose shapes are compared with points.
-        look: whether the room's photos are looked at.
+    """The room, the kinds of its scanned boxes as likely as its photos (where `look` says so) and all else say.
 
     Raises:
         InputError: a photo cannot be read.

@@ -70,13 +70,7 @@ class _Rectangle:
 def find_openings(
     points: Float[np.ndarray, "n 3"], walls: Sequence[MeasuredWall], floor_outline: Float[np.ndarray, "k 2"]
 ) -> tuple[MeasuredOpening, ...]:
-    """Openings of a room's walls.
-
-    Args:
-        points: of the scan, +Z up, the floor at 0.
-        walls: upright rectangles.
-        floor_outline: the room seen from above, either way round.
-    """
+    """Openings of a room's upright walls, by the points of a scan whose floor is at 0."""
     area = signed_area(floor_outline)
     return tuple(chain.from_iterable(_wall_openings(points, wall, np.sign(area)) for wall in walls))
 

@@ -14,11 +14,9 @@ LOWER = 0.85
 
 
 def frame_of_scene(raw: RawModel, unit_m: float | None = None) -> tuple[Float[np.ndarray, "4 4"], tuple[str, ...]]:
-    """The file's frame and unit to the world (+Z up, metres), and notes about what had to be guessed.
+    """The frame and unit of a room's scene to the world (+Z up, metres), and notes about what had to be guessed.
 
-    Args:
-        raw: A scene of a room, not a single model.
-        unit_m: Metres in one unit of the file; None takes what the format says or the size makes likely.
+    Without `unit_m` it is what the format says or the size makes likely.
     """
     promised = max(AXES, key=lambda axis: raw.convention.up.get(axis, 0.0))
     extents = np.asarray(raw.scene.extents, float)

@@ -62,9 +62,7 @@ def floor_planes(storeys: Sequence[Storey]) -> tuple[Plane, ...]:
 def rooms_of_floors(floors: Sequence[Plane], names: Mapping[str, str]) -> tuple[HomeRoom, ...]:
     """A room for each floor of a home; none where there is but one floor.
 
-    Args:
-        floors: of all storeys.
-        names: of rooms by the id of their floor; equal ones are numbered, and rooms without one, too.
+    Names are by the id of the floor; equal ones are numbered, and rooms without one, too.
     """
     if len(floors) < 2:
         return ()

@@ -50,10 +50,6 @@ MAX_FILES = 5000
 def parts_of_sweet_home(path: Path, progress: Progress = SILENT) -> tuple[tuple[Part, ...], tuple[str, ...]]:
     """Objects, walls and floors of a home, and notes about what is read otherwise than it is drawn.
 
-    Args:
-        path: The file.
-        progress: Told of each piece of furniture.
-
     Raises:
         InputError: it cannot be read, or holds more than a scene does.
         Cancelled: on request.

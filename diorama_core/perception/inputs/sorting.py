@@ -39,10 +39,7 @@ class Recognised:
 def recognise(content: bytes, name: str, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
     """What a file may be, likeliest first; several where its content leaves that open.
 
-    Args:
-        content: of the file.
-        name: of the file.
-        photo_size: of the photo that is open, where there is one.
+    `photo_size` is that of the photo that is open, where there is one.
 
     Raises:
         InputError: nothing that is read.

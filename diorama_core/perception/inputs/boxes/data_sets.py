@@ -9,9 +9,8 @@ from typing import Any
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import parse_json, shorten
-from diorama_core.perception.inputs.boxes.dictionaries import box_of, score_of, word_of
-from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Size, picture_of
-from diorama_core.perception.inputs.json_values import objects_of, size_of
+from diorama_core.perception.inputs.boxes.dictionaries import box_of, objects_of, score_of, size_of, word_of
+from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxFile, BoxText, entries_of, picture_of
 
 _RESULT_KEYS = frozenset({"image_id", "category_id", "area", "iscrowd", "segmentation"})
 MAX_CATEGORY_BYTES = 64_000_000
@@ -27,25 +26,21 @@ def is_data_set(text: BoxText) -> bool:
 
 def read_data_set(text: BoxText) -> BoxFile:
     """The boxes of the photo, by its file name where the data set holds several pictures."""
-    document: Any = text.document
     image, rows = photo_of_data_set(text)
-    count = len(objects_of(document.get("images")))
-    named = f"{text.source.name} is of {count} pictures; the boxes of {(image or {}).get('file_name')} are used"
-    notes = (named,) if count > 1 else ()
-    file = _read(rows, _categories(document), text.source.name)
-    return BoxFile(file.entries, _size(image), notes=(*notes, *file.notes))
+    count = len(objects_of(text.document.get("images")))
+    named = f"{text.source.name} is of {count} pictures; the boxes of {image.get('file_name')} are used"
+    file = _read(rows, _categories(text.document), text.source.name)
+    size = size_of(image.get("width"), image.get("height"))
+    return BoxFile(file.entries, size, notes=(named,) if count > 1 else ())
 
 
-def photo_of_data_set(text: BoxText) -> tuple[Mapping[str, Any] | None, list[Mapping[str, Any]]]:
-    """The photo among a data set's pictures, None where it lists none, and its annotations.
-
-    Raises:
-        InputError: of several pictures none is the photo.
-    """
-    document: Any = text.document
-    images = objects_of(document.get("images"))
-    image = picture_of(images, [i.get("file_name", "") for i in images], text, "COCO file") if images else None
-    return image, [a for a in _annotations(document) if image is None or a.get("image_id") == image.get("id")]
+def photo_of_data_set(text: BoxText) -> tuple[Mapping[str, Any], list[Mapping[str, Any]]]:
+    """The photo among a data set's pictures, empty where it lists none, and its annotations."""
+    images, rows = objects_of(text.document.get("images")), list(_annotations(text.document))
+    if not images:
+        return {}, rows
+    image = picture_of([(i.get("file_name", ""), i) for i in images], text, "COCO file")
+    return image, [a for a in rows if a.get("image_id") == image.get("id")]
 
 
 def _annotations(document: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
@@ -73,12 +68,12 @@ def read_results(text: BoxText) -> BoxFile:
 
 
 def _read(rows: Sequence[Mapping[str, Any]], names: Mapping[int, str], where: str) -> BoxFile:
-    entries = []
-    for index, row in enumerate(rows):
-        corners = box_of(row, f"{where}: annotation {index}", "sized") if row.get("bbox") else box_of(row, where)
-        if corners is not None:
-            entries.append(BoxEntry(corners, word_of(row, names), score_of(row)))
-    return BoxFile(tuple(entries))
+    boxes = (
+        box_of(row, f"{where}: annotation {index}", "sized") if row.get("bbox") else box_of(row, where)
+        for index, row in enumerate(rows)
+    )
+    pairs = zip(boxes, rows, strict=True)
+    return BoxFile(entries_of((corners, word_of(row, names), score_of(row)) for corners, row in pairs))
 
 
 def rows_of_results(rows: Sequence[Mapping[str, Any]], text: BoxText) -> list[Mapping[str, Any]]:
@@ -118,7 +113,3 @@ def _categories_beside(text: BoxText) -> dict[int, str]:
         if isinstance(document, dict) and (names := _categories(document)):
             return names
     return {}
-
-
-def _size(image: Mapping[str, Any] | None) -> Size | None:
-    return None if image is None else size_of(image.get("width"), image.get("height"))

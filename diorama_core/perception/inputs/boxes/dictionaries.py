@@ -1,4 +1,7 @@
-"""One annotation as a JSON object: where its box, its name and its score are, whatever the program calls them."""
+"""One annotation as a JSON object: where its box, its name and its score are, whatever the program calls them.
+
+Values of parsed JSON with the type that a reader needs, or none where a file holds something else.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +16,8 @@ from diorama_core.perception.inputs.boxes.entry import UNNAMED, Corners, Layout,
 
 MAX_COORDINATE = 1e9
 MAX_WORD = 200
+MAX_SIDE = 1e6
+"""In pixels: no picture is larger, so that what is larger is no side of one."""
 _SCORE = re.compile(r"\s*(?:\(\s*[01]?\.\d+\s*\)|\s[01]?\.\d+)\s*$")
 """Behind a word, as in "chair(0.45)" of Grounding DINO and "chair 0.87" of drawn labels."""
 _LISTS: tuple[tuple[str, Layout], ...] = (
@@ -48,6 +53,18 @@ _WORDS = (
 FIGURES = frozenset({"rectangle", "rect", "bbox", "box", "polygon", "rectanglelabels", "bounding_box", "bounding box"})
 """What tools say of the drawn figure under `type`, not of what is in it: elsewhere a box is a box."""
 _SCORES = ("score", "confidence", "conf", "probability", "prob", "predictediou", "certainty")
+
+
+def objects_of(value: object) -> list[dict[str, Any]]:
+    """The entries of a list of objects; none where it is no list, or one that holds anything else."""
+    return value if isinstance(value, list) and all(isinstance(v, dict) for v in value) else []
+
+
+def size_of(width: object, height: object) -> tuple[int, int] | None:
+    """Width and height of a picture; None where they are no numbers, or no sides of a picture."""
+    if not isinstance(width, int | float) or not isinstance(height, int | float):
+        return None
+    return (int(width), int(height)) if 1 < width < MAX_SIDE and 1 < height < MAX_SIDE else None
 
 
 def keys_of(entry: Mapping[str, Any]) -> dict[str, Any]:
@@ -94,12 +111,7 @@ def box_of(entry: Mapping[str, Any], where: str, layout: Layout | None = None) -
 
 
 def word_of(entry: Mapping[str, Any], names: Mapping[int, str] | None = None) -> str:
-    """The name of what is in the box; "object" where there is none.
-
-    Args:
-        entry: the annotation.
-        names: of the numbers that stand for classes.
-    """
+    """The name of what is in the box, by `names` where its class is a number; "object" where there is none."""
     keys = keys_of(entry)
     for key in _WORDS:
         word = _word(keys.get(key))

@@ -16,6 +16,7 @@ from diorama_core.perception.inputs.boxes.dictionaries import (
     has_class_number,
     keys_of,
     numbers,
+    objects_of,
     score_of,
     word_of,
 )
@@ -39,7 +40,6 @@ from diorama_core.perception.inputs.boxes.nested import (
     rows_of_photo,
     size_in,
 )
-from diorama_core.perception.inputs.json_values import objects_of
 
 _COLUMNS = ("boxes", "bboxes", "predboxes", "xyxy", "detectionboxes", "bbox")
 _COLUMN_WORDS = (
@@ -135,15 +135,8 @@ def is_columns(text: BoxText) -> bool:
 
 
 def read_columns(text: BoxText) -> BoxFile:
-    """Boxes with the names and scores of the same place in their lists.
-
-    Raises:
-        InputError: the lists have different lengths.
-    """
-    pictures = objects_of(text.document)
-    document: Any = text.document
-    if pictures:
-        document = picture_of(pictures, [picture_name(p) for p in pictures], text, "file")
+    """Boxes with the names and scores of the same place in their lists."""
+    document = _picture_in(objects_of(text.document), text)
     keys = keys_of(_columns(document) or {})
     name = text.source.name
     boxes = next(rows for k in _COLUMNS if (rows := _rows_of_four(keys.get(k))))
@@ -176,15 +169,8 @@ def is_wrapped(text: BoxText) -> bool:
 
 
 def read_wrapped(text: BoxText) -> BoxFile:
-    """The longest list of annotations within an object, with the picture's size that stands beside it.
-
-    Raises:
-        InputError: it is of several pictures, and none is the photo.
-    """
-    document: Any = text.document
-    pictures = pictures_in(document)
-    if pictures:
-        document = picture_of(pictures, [picture_name(p) for p in pictures], text, "file")
+    """The longest list of annotations within an object, with the picture's size that stands beside it."""
+    document = _picture_in(pictures_in(text.document), text)
     lists = list(lists_in(document))
     if not lists:
         return BoxFile(())
@@ -227,6 +213,11 @@ def _rows_by_key(document: object) -> list[dict[str, Any]]:
         else:
             return []
     return rows
+
+
+def _picture_in(pictures: Sequence[Mapping[str, Any]], text: BoxText) -> Any:
+    """What the file says of the photo among several pictures; all that it says where there are none."""
+    return picture_of([(picture_name(p), p) for p in pictures], text, "file") if pictures else text.document
 
 
 def _words(rows: Sequence[Mapping[str, Any]], entries: Sequence[BoxEntry]) -> tuple[list[str], tuple[str, ...]]:

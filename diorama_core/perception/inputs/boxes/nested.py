@@ -11,15 +11,11 @@ from diorama_core.perception.inputs.boxes.dictionaries import (
     box_numbers,
     has_class_number,
     keys_of,
+    objects_of,
+    size_of,
     word_of,
 )
-from diorama_core.perception.inputs.boxes.entry import (
-    UNNAMED,
-    BoxText,
-    Size,
-    picture_of,
-)
-from diorama_core.perception.inputs.json_values import objects_of, size_of
+from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxText, Size, rows_of_picture
 
 MAX_NESTING = 8
 _PICTURES = (
@@ -78,16 +74,9 @@ def pictures_in(value: object, level: int = 0) -> list[dict[str, Any]]:
 
 
 def rows_of_photo(rows: Sequence[Mapping[str, Any]], text: BoxText) -> list[Mapping[str, Any]]:
-    """The annotations of the photo, where each says of which picture it is.
-
-    Raises:
-        InputError: they are of several pictures, and none is the photo.
-    """
+    """The annotations of the photo, where each says of which picture it is."""
     key = next((k for k in _FILES if all(isinstance(keys_of(r).get(k), str) for r in rows)), None)
-    by_name: dict[str, list[Mapping[str, Any]]] = {}
-    for row in rows:
-        by_name.setdefault("" if key is None else keys_of(row)[key], []).append(row)
-    return picture_of(list(by_name.values()), list(by_name), text, "file")
+    return rows_of_picture(((None if key is None else keys_of(row)[key], row) for row in rows), text, "file")
 
 
 def picture_name(row: Mapping[str, Any]) -> str:

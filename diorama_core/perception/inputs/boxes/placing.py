@@ -54,11 +54,6 @@ class _Reading:
 def place_boxes(name: str, file: BoxFile, photo: DecodedPhoto) -> tuple[list[Corners], tuple[str, ...]]:
     """The boxes in pixels of the upright original without its border, and what was done to them.
 
-    Args:
-        name: of the file.
-        file: what it says.
-        photo: over which the boxes lie.
-
     Raises:
         InputError: the annotated picture has other proportions than the photo.
     """

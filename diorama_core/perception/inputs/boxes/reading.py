@@ -10,7 +10,7 @@ from diorama_core.errors import InputError
 from diorama_core.io.bounded import megabytes, shorten
 from diorama_core.library.labels import understand_label
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
-from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile
+from diorama_core.perception.inputs.boxes.entry import BoxFile
 from diorama_core.perception.inputs.boxes.placing import place_boxes
 from diorama_core.perception.inputs.boxes.table import BOX_FORMS, EXAMPLE, parse_box_text
 from diorama_core.perception.inputs.photos.reading import DecodedPhoto
@@ -86,8 +86,7 @@ def _file(source: Source, photo: DecodedPhoto) -> BoxFile:
 
 def _what_it_is(document: object) -> str:
     if isinstance(document, list):
-        kind = type(document[0]).__name__ if document else "nothing"
-        return f"entry 0 of this JSON list has no box ({shorten(repr(document[0]), 40)})" if kind else ""
+        return f"entry 0 of this JSON list has no box ({shorten(repr(document[0]), 40)})"
     if isinstance(document, dict):
         return f"this JSON object holds no list of boxes (keys: {shorten(', '.join(map(str, document)), 60)})"
     if isinstance(document, Element):
@@ -116,6 +115,3 @@ def _clip_box(name: str, index: int, bbox: tuple[float, float, float, float], ph
             "correct or remove it"
         )
     return box, max(abs(a - b) for a, b in zip(box, bbox, strict=True)) > CLIP_NOTICE_PX
-
-
-__all__ = ["MAX_OBJECTS", "BoxEntry", "read_boxes", "understand_word"]

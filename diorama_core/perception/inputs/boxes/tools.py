@@ -9,7 +9,7 @@ from typing import Any
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import shorten
 from diorama_core.perception.inputs.boxes.dictionaries import box_of, keys_of, score_of, word_of
-from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile, BoxText, picture_of
+from diorama_core.perception.inputs.boxes.entry import BoxEntry, BoxFile, BoxText, entries_of, picture_of
 from diorama_core.perception.inputs.boxes.nested import size_in
 
 MAX_NESTING = 8
@@ -24,9 +24,8 @@ def is_labelme(text: BoxText) -> bool:
 
 def read_labelme(text: BoxText) -> BoxFile:
     """Rectangles, and the bounds of polygons, circles and lines; points alone are left out."""
-    document: Any = text.document
     entries, left_out = [], 0
-    for index, shape in enumerate(document["shapes"]):
+    for index, shape in enumerate(text.document["shapes"]):
         shape = _circle_as_box(shape)
         corners = box_of(shape, f"{text.source.name}: shape {index}")
         if corners is None or shape.get("shape_type") == "point":
@@ -34,7 +33,7 @@ def read_labelme(text: BoxText) -> BoxFile:
         else:
             entries.append(BoxEntry(corners, word_of(shape)))
     notes = (f"{left_out} of {text.source.name}'s shapes are points and were left out",) if left_out else ()
-    return BoxFile(tuple(entries), size_in(document), notes=notes)
+    return BoxFile(tuple(entries), size_in(text.document), notes=notes)
 
 
 def is_label_studio(text: BoxText) -> bool:
@@ -43,20 +42,13 @@ def is_label_studio(text: BoxText) -> bool:
 
 
 def read_label_studio(text: BoxText) -> BoxFile:
-    """Rectangles and the bounds of polygons of the photo's task.
-
-    Raises:
-        InputError: of several tasks none is the photo's.
-    """
+    """Rectangles and the bounds of polygons of the photo's task."""
     results = list(_studio_results(_task_of(text)))
-    entries, size = [], None
+    boxes = []
     for index, result in enumerate(results):
         value = result.get("value", result)
-        corners = box_of(value, f"{text.source.name}: result {index}")
-        if corners is not None:
-            entries.append(BoxEntry(corners, word_of(value), score_of(result)))
-        size = size or size_in(result)
-    return BoxFile(tuple(entries), size, "percent")
+        boxes.append((box_of(value, f"{text.source.name}: result {index}"), word_of(value), score_of(result)))
+    return BoxFile(entries_of(boxes), next(filter(None, map(size_in, results)), None), "percent")
 
 
 def is_via(text: BoxText) -> bool:
@@ -65,31 +57,21 @@ def is_via(text: BoxText) -> bool:
 
 
 def read_via(text: BoxText) -> BoxFile:
-    """The regions of the photo.
-
-    Raises:
-        InputError: of several pictures none is the photo.
-    """
-    entries = []
+    """The regions of the photo."""
+    boxes = []
     for index, region in enumerate(regions_of(text)):
         shape = keys_of(region.get("shape_attributes") or {}) if isinstance(region, dict) else {}
         if isinstance(shape.get("allpointsx"), list) and isinstance(shape.get("allpointsy"), list):
             points = [[x, y] for x, y in zip(shape["allpointsx"], shape["allpointsy"], strict=False)]
             shape = {"points": points}
-        corners = box_of(shape, f"{text.source.name}: region {index}")
-        if corners is not None:
-            entries.append(BoxEntry(corners, word_of(region)))
-    return BoxFile(tuple(entries))
+        boxes.append((box_of(shape, f"{text.source.name}: region {index}"), word_of(region), 1.0))
+    return BoxFile(entries_of(boxes))
 
 
 def regions_of(text: BoxText) -> list[Any]:
-    """The regions of the photo.
-
-    Raises:
-        InputError: of several pictures none is the photo.
-    """
+    """The regions of the photo."""
     pictures = _via_pictures(text.document)
-    regions = picture_of(pictures, [p.get("filename", "") for p in pictures], text, "VIA file")["regions"]
+    regions = picture_of([(p.get("filename", ""), p) for p in pictures], text, "VIA file")["regions"]
     return list(regions.values()) if isinstance(regions, dict) else list(regions)
 
 
@@ -115,7 +97,10 @@ def _task_of(text: BoxText) -> object:
     stem = Path(text.photo_name).stem
     named = [t for t in tasks if isinstance(t, dict) and stem in str(t.get("data", t.get("image", "")))]
     if len(named) != 1:
-        raise InputError(_several_pictures_message(text, len(tasks)))
+        raise InputError(
+            f"{text.source.name}: it is of {len(tasks)} pictures, none of them called {shorten(text.photo_name, 60)}; "
+            "keep what is of this photo"
+        )
     return named[0]
 
 
@@ -148,8 +133,3 @@ def _via_pictures(document: object) -> list[dict[str, Any]]:
         isinstance(p, dict) and isinstance(p.get("regions"), list | dict) for p in pictures_listed
     )
     return pictures_listed if is_via_file else []
-
-
-def _several_pictures_message(text: BoxText, count: int) -> str:
-    shown = shorten(text.photo_name, 60)
-    return f"{text.source.name}: it is of {count} pictures, none of them called {shown}; keep what is of this photo"

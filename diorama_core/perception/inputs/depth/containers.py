@@ -39,11 +39,7 @@ def is_number_table(content: DepthContent) -> bool:
 
 
 def read_number_table(content: DepthContent) -> RawDepth:
-    """The numbers; whole ones are millimetres unless the picture says otherwise.
-
-    Raises:
-        InputError: a row is damaged or of another length.
-    """
+    """The numbers; whole ones are millimetres unless the picture says otherwise."""
     source = content.source
     text = re.sub(rb"[,;\t]+", b" ", source.data.lstrip(b"\xef\xbb\xbf"))
     try:

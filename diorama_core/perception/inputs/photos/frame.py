@@ -158,11 +158,6 @@ class PhotoFrame:
     ) -> tuple[Shaped[np.ndarray, "h2 w2 *c"], tuple[str, ...]]:
         """A map as it lies over the photo without its border, whether it came with it, or unturned; and what was done.
 
-        Args:
-            name: of the file, for messages.
-            what: the map is, for messages.
-            values: h rows and w columns, in any number of channels.
-
         Raises:
             InputError: its proportions are neither those of the photo nor of its stored pixels.
         """

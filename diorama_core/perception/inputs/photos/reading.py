@@ -298,12 +298,7 @@ def check_perspective(name: str, picture: Image.Image, exif: Mapping[int, Any], 
 
 
 def check_sphere(name: str, picture: Image.Image) -> None:
-    """Raise `InputError` where a picture is not all of a sphere.
-
-    Args:
-        name: of the file.
-        picture: upright, decoded.
-    """
+    """Raise `InputError` where an upright picture is not all of a sphere."""
     if not _SPHERE_ASPECT[0] <= picture.width / picture.height <= _SPHERE_ASPECT[1]:
         size = f"{picture.width} x {picture.height}"
         raise InputError(f"{name}: {size} is not 2 : 1, so it is no whole 360 degree photo; stitch all directions")

@@ -18,7 +18,7 @@ from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.masks.pictures import paint_masks, without_void
 from diorama_core.perception.inputs.masks.reading import read_masks
-from diorama_core.perception.inputs.masks.segments import decode_runs, is_markup, read_segments
+from diorama_core.perception.inputs.masks.segments import decode_runs, is_markup, read_segments, whole_numbers
 from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent, read_arrays, read_folder_of_masks
 from diorama_core.perception.inputs.source import Folder, Source, form_of, read_folder
 from tests.perception.inputs.files import decoded, encoded, npy
@@ -344,3 +344,10 @@ def test_pieces_within_an_object_are_its_own_and_others_are_specks() -> None:
     values, _, notes = read_masks(picture(Image.fromarray(large)), (), decoded(WIDTH, HEIGHT))
     np.testing.assert_array_equal(values, expected)
     assert notes == ("1 specks of the masks were dropped",)
+
+
+def test_only_lists_of_numbers_are_whole_numbers() -> None:
+    assert whole_numbers([3, 4.0]) == [3, 4]
+    for other in (None, "34", 3, [3, None], [float("nan")]):
+        with pytest.raises(ValueError, match=r"."):
+            whole_numbers(other)
