@@ -33,9 +33,8 @@ class EdgeMap:
         self._scale = np.array([size[0] / rgb.shape[1], size[1] / rgb.shape[0]])
         self._slack = max(1, round(SLACK_SHARE * max(size)))
         # The fourth root tempers strong edges: that a side lies on one counts more than how strong it is.
-        self._across, self._along = (
-            np.cumsum(np.pad(np.sqrt(np.sqrt(m)), ((1, 0), (0, 0))), axis=0) for m in (across, along.T)
-        )
+        tempered = (np.sqrt(np.sqrt(m)) for m in (across, along.T))
+        self._across, self._along = (np.cumsum(np.pad(m, ((1, 0), (0, 0))), axis=0) for m in tempered)
 
     def agreement(self, boxes: Sequence[Corners]) -> float:
         """The mean strength of edges under the sides of boxes, over that of such lines anywhere; 1 says nothing."""

@@ -148,7 +148,7 @@ def _table(text: BoxText) -> list[dict[str, str]]:
 def _table_box(row: dict[str, str]) -> tuple[Sequence[float], Layout] | None:
     try:
         box = box_numbers(_values_in(row), "")
-    except InputError:  # a cell holds no number; the reader says which
+    except Exception:  # a cell holds no number; the reader says which
         return None
     return None if box is None else box[:2]
 
