@@ -40,11 +40,7 @@ def is_array_cloud(head: FileHead) -> bool:
 
 
 def read_array_cloud(path: Path) -> Float[np.ndarray, "n 3"]:
-    """The points of the first array that is a list of them: its fields x, y and z, or its first three columns.
-
-    Raises:
-        InputError: there is none.
-    """
+    """The points of the first array that is a list of them: its fields x, y and z, or its first three columns."""
     name = _cloud_in(path)
     for array_name, stream, size in _arrays(path):
         if array_name != name:
@@ -65,11 +61,7 @@ def is_float_dump(head: FileHead) -> bool:
 
 
 def read_float_dump(path: Path) -> Float[np.ndarray, "n 3"]:
-    """The places of a dump's points.
-
-    Raises:
-        InputError: its floats are no points.
-    """
+    """The places of a dump's points."""
     with path.open("rb") as stream:
         width = _width(stream.read(1 << 16), path.stat().st_size)
     if width is None:

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
 
 from diorama_core.errors import InputError
 from diorama_core.importing.depth_frames import (
@@ -19,7 +18,9 @@ from diorama_core.importing.depth_frames import (
     DepthFrame,
     FrameForm,
     Frames,
+    first_of,
     numbers_of,
+    size_of,
     text_of,
 )
 from diorama_core.io.contained import ContainedFiles
@@ -47,12 +48,12 @@ def seven_scenes_frames(folder: Path) -> Frames:
         T = numbers_of(pose) if files.holds(pose) else np.full((4, 4), np.nan)
         if T.shape != (4, 4) or not np.isfinite(T).all():
             continue
-        size = _size(depth)
+        size = size_of(depth)
         k = SEVEN_SCENES.resize(*size)
         if known is not None and len(known) >= 7:
             k = Intrinsics(*size, known[0], known[5], known[2], known[6])
         pictures = (depth.with_name(f"{stem}.color.{ending}") for ending in ("png", "jpg"))
-        frames.append(DepthFrame(depth, Camera(k, T), None, next(filter(files.holds, pictures), None)))
+        frames.append(DepthFrame(depth, Camera(k, T), None, first_of(files, *pictures)))
     return Frames(tuple(frames), None, () if known is not None else ("the camera is 7-Scenes' own (585 pixels)",))
 
 
@@ -70,8 +71,9 @@ def replica_frames(folder: Path) -> Frames:
         steps = float(given["scale"])
     frames = []
     for depth, row in zip(_find(folder, files, "results/depth*.png"), rows, strict=False):
-        picture = next(filter(files.holds, depth.parent.glob(depth.stem.replace("depth", "frame") + ".*")), None)
-        frames.append(DepthFrame(depth, Camera(k.resize(*_size(depth)), row.reshape(4, 4)), None, picture, 1 / steps))
+        picture = first_of(files, *depth.parent.glob(depth.stem.replace("depth", "frame") + ".*"))
+        camera = Camera(k.resize(*size_of(depth)), row.reshape(4, 4))
+        frames.append(DepthFrame(depth, camera, None, picture, 1 / steps))
     notes = () if text else ("the camera is that of NICE-SLAM's Replica (600 of 1200 pixels)",)
     return Frames(tuple(frames), None, notes)
 
@@ -90,19 +92,13 @@ def matterport_frames(folder: Path) -> Frames:
                 continue
             depth = depths[words[1]]
             T = np.array(words[3:19], float).reshape(4, 4) @ OPENCV_FROM_OPENGL
-            size = _size(depth)
-            camera = Camera(Intrinsics(*size, k[0, 0], k[1, 1], k[0, 2], k[1, 2]), T)
+            camera = Camera(Intrinsics(*size_of(depth), k[0, 0], k[1, 1], k[0, 2], k[1, 2]), T)
             frames.append(DepthFrame(depth, camera, None, pictures.get(words[2]), 1 / MATTERPORT_STEPS))
     return Frames(tuple(frames), UP_Z, ("depth of Matterport3D, in 1/4000 m",))
 
 
 def _find(folder: Path, files: ContainedFiles, *patterns: str) -> Iterator[Path]:
     return filter(files.holds, sorted(path for pattern in patterns for path in folder.rglob(pattern)))
-
-
-def _size(depth: Path) -> tuple[int, int]:
-    with Image.open(depth, formats=("PNG", "PPM")) as opened:
-        return opened.size
 
 
 def _has(head: FileHead, *words: str) -> bool:

@@ -72,9 +72,8 @@ def polycam_frames(folder: Path) -> Frames:
     keyframes = folder / "keyframes" if (folder / "keyframes").is_dir() else folder
     files, frames = ContainedFiles(folder, InputError), {}
     for path in filter(files.holds, sorted((keyframes / "depth").glob("*.png"))):
-        sure = keyframes / "confidence" / path.name
-        pictures = [keyframes / name / f"{path.stem}.jpg" for name in ("corrected_images", "images")]
-        frames[path.stem] = (path, sure, next(filter(files.holds, pictures), None))
+        pictures = (keyframes / name / f"{path.stem}.jpg" for name in ("corrected_images", "images"))
+        frames[path.stem] = (path, keyframes / "confidence" / path.name, first_of(files, *pictures))
     return _with_poses(keyframes, frames)
 
 
@@ -83,8 +82,8 @@ def scanner_app_frames(folder: Path) -> Frames:
     files, frames = ContainedFiles(folder, InputError), {}
     for path in filter(files.holds, sorted(folder.glob("depth_*.png"))):
         number = path.stem.removeprefix("depth_")
-        picture = folder / f"frame_{number}.jpg"
-        frames[f"frame_{number}"] = (path, folder / f"conf_{number}.png", picture if files.holds(picture) else None)
+        picture = first_of(files, folder / f"frame_{number}.jpg")
+        frames[f"frame_{number}"] = (path, folder / f"conf_{number}.png", picture)
     return _with_poses(folder, frames)
 
 
@@ -95,10 +94,9 @@ def stray_frames(folder: Path) -> Frames:
     files, frames = ContainedFiles(folder, InputError), []
     for row in numbers_of(folder / "odometry.csv", heading=True)[:, :9]:
         name = f"{int(row[1]):06d}.png"
-        depth, sure = folder / "depth" / name, folder / "confidence" / name
-        if files.holds(depth):
-            camera = Camera(k, _pose(row[2:5], row[5:9]))
-            frames.append(DepthFrame(depth, camera, sure if files.holds(sure) else None))
+        if files.holds(folder / "depth" / name):
+            sure = first_of(files, folder / "confidence" / name)
+            frames.append(DepthFrame(folder / "depth" / name, Camera(k, _pose(row[2:5], row[5:9])), sure))
     return Frames(tuple(frames), UP_Y)
 
 
@@ -113,11 +111,9 @@ def tum_frames(folder: Path) -> Frames:
         depth = folder / name
         if abs(poses[nearest, 0] - float(time)) > TUM_APART_S or not files.holds(depth):
             continue
-        with Image.open(depth, formats=("PNG", "PPM")) as opened:
-            k = KINECT.resize(*opened.size)
         shown = min(pictures, key=lambda p: abs(float(p[0]) - float(time)), default=None)
-        picture = folder / shown[1] if shown is not None and files.holds(folder / shown[1]) else None
-        camera = Camera(k, _pose(poses[nearest, 1:4], poses[nearest, 4:8]))
+        picture = None if shown is None else first_of(files, folder / shown[1])
+        camera = Camera(KINECT.resize(*size_of(depth)), _pose(poses[nearest, 1:4], poses[nearest, 4:8]))
         frames.append(DepthFrame(depth, camera, None, picture, TUM_UNIT_M))
     return Frames(tuple(frames), UP_Z, ("depth of TUM RGB-D, in 1/5000 m",))
 
@@ -128,13 +124,9 @@ def scannet_frames(folder: Path) -> Frames:
     files, frames = ContainedFiles(folder, InputError), []
     for depth in sorted(filter(files.holds, (folder / "depth").glob("*.png")), key=lambda p: (len(p.stem), p.stem)):
         pose, picture = folder / "pose" / f"{depth.stem}.txt", folder / "color" / f"{depth.stem}.jpg"
-        if not files.holds(pose):
-            continue
-        T = numbers_of(pose).reshape(4, 4)
-        if np.isfinite(T).all():
-            with Image.open(depth, formats=("PNG", "PPM")) as opened:
-                k = Intrinsics(*opened.size, K[0, 0], K[1, 1], K[0, 2], K[1, 2])
-            frames.append(DepthFrame(depth, Camera(k, T), None, picture if files.holds(picture) else None))
+        if files.holds(pose) and np.isfinite(T := numbers_of(pose).reshape(4, 4)).all():
+            k = Intrinsics(*size_of(depth), K[0, 0], K[1, 1], K[0, 2], K[1, 2])
+            frames.append(DepthFrame(depth, Camera(k, T), None, first_of(files, picture)))
     return Frames(tuple(frames), UP_Z)
 
 
@@ -184,16 +176,30 @@ def cloud_of_frames(folder: Path, form: FrameForm) -> PointCloud:
 
 def read_depth(path: Path, unit_m: float = MILLIMETRE) -> Float[np.ndarray, "h w"]:
     """Depth along the viewing axis in metres, from a PNG or PGM; 0 where the sensor saw nothing."""
+    return _picture(path).astype(np.float64) * unit_m
+
+
+def _picture(path: Path) -> np.ndarray:
     with Image.open(path, formats=("PNG", "PPM")) as opened:
-        return np.asarray(opened).astype(np.float64) * unit_m
+        return np.asarray(opened)
+
+
+def size_of(depth: Path) -> tuple[int, int]:
+    """Width and height of a depth picture."""
+    with Image.open(depth, formats=("PNG", "PPM")) as opened:
+        return opened.size
+
+
+def first_of(files: ContainedFiles, *paths: Path) -> Path | None:
+    """The first of the paths that is a file of the folder."""
+    return next(filter(files.holds, paths), None)
 
 
 def _points(frame: DepthFrame, step: int) -> Float[np.ndarray, "n 3"]:
     depth = read_depth(frame.depth, frame.unit_m)
     good = (depth > 0.05) & (depth < MAX_DEPTH_M)
     if frame.confidence is not None:
-        with Image.open(frame.confidence, formats=("PNG", "PPM")) as opened:
-            sure = np.asarray(opened)
+        sure = _picture(frame.confidence)
         if sure.shape != depth.shape:
             raise InputError(f"{frame.confidence.name} has another size than its depth; export the scan again")
         good &= is_sure(sure)
@@ -209,7 +215,7 @@ def _points(frame: DepthFrame, step: int) -> Float[np.ndarray, "n 3"]:
 def _with_poses(folder: Path, frame_files: dict[str, tuple[Path, Path, Path | None]]) -> Frames:
     poses, files = read_poses(folder), ContainedFiles(folder, InputError)
     frames = [
-        DepthFrame(depth, p.camera, sure if files.holds(sure) else None, picture)
+        DepthFrame(depth, p.camera, first_of(files, sure), picture)
         for p in poses.photos
         if Path(p.name).stem in frame_files
         for depth, sure, picture in (frame_files[Path(p.name).stem],)

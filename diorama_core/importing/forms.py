@@ -21,7 +21,7 @@ from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.measured_types import MeasuredRoom
 from diorama_core.importing.parts import Part, parts_of_gltf, parts_of_usd, split_scene
 from diorama_core.importing.point_cloud import PointCloud, points_of_mesh
-from diorama_core.importing.point_files import POINT_FORMS, PointForm, read_points
+from diorama_core.importing.point_files import POINT_FORMS, read_points
 from diorama_core.importing.roomplan import read_room_plan
 from diorama_core.importing.scene_frame import frame_of_scene
 from diorama_core.importing.sweethome import parts_of_sweet_home
@@ -61,8 +61,6 @@ class SceneParts:
 
 
 _SCENES = "GLB, USD, Sweet Home 3D, OBJ"
-
-
 Content = MarkedFile | MeasuredRoom | PointCloud | SceneParts
 
 
@@ -174,11 +172,6 @@ def _cloud(path: Path, progress: Progress, unit_m: float | None) -> Content:
     return cloud if unit_m is None else cloud.to_unit(unit_m)
 
 
-def _points(form: PointForm) -> SceneForm:
-    return SceneForm(form.name, form.files, "walls from the points, boxes of what stands in them", form.tells,
-                     _cloud, form.extra)  # fmt: skip
-
-
 def _is_room_plan(head: FileHead) -> bool:
     if head.is_folder:
         captures = [head.path / name for name in head.names if name.lower().endswith(".json")]
@@ -202,14 +195,9 @@ def _is_model(*names: str) -> Callable[[FileHead], bool]:
 
 
 MAX_LOOKED_AT = 64_000_000
-
-
 MAX_ROOMS = 200
 """Files of a folder that are looked at."""
-
-
 OBJECTS = "Diorama's own comes back as it was; else floor, walls and objects, or a scan"
-
 
 SCENE_FORMS = (
     SceneForm("glTF", ".glb, .gltf", OBJECTS, _is_model("glTF"), _gltf),
@@ -219,7 +207,8 @@ SCENE_FORMS = (
     SceneForm("RoomPlan", ".json, a folder of captured rooms",
               "walls, doors and windows as measured, furniture in the boxes, a home's rooms by name", _is_room_plan,
               _room_plan),
-    *(_points(form) for form in POINT_FORMS),
+    *(SceneForm(form.name, form.files, "walls from the points, boxes of what stands in them", form.tells, _cloud,
+                form.extra) for form in POINT_FORMS),
     SceneForm("OBJ, FBX, Collada, 3DS", ".obj, .fbx, .dae, .3ds", "floor, walls and objects, or a scan",
               _is_model("OBJ", "FBX", "Collada", "3DS", "OFF", "STL"), _model),
 )  # fmt: skip

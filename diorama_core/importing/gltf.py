@@ -174,9 +174,8 @@ class _Pictures:
             return None
         for primitive in self._document["meshes"][mesh]["primitives"]:
             material = self._document.get("materials", [])[primitive["material"]] if "material" in primitive else {}
-            texture = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
-            if texture is not None:
-                return self._image(self._document["textures"][texture["index"]])
+            if _texture(material) is not None:
+                return self._image(material)
         return None
 
     def from_photo(self) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
@@ -184,18 +183,16 @@ class _Pictures:
         pictures = {}
         for material in self._document.get("materials", []):
             name = FROM_PHOTO.search(str(material.get("name", "")))
-            texture = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
-            picture = (
-                None if name is None or texture is None else self._image(self._document["textures"][texture["index"]])
-            )
+            picture = None if name is None else self._image(material)
             if name is not None and picture is not None:
                 pictures[name.group(1)] = picture
         return pictures
 
-    def _image(self, texture: Json) -> UInt8[np.ndarray, "h w 3"] | None:
-        if "source" not in texture:
+    def _image(self, material: Json) -> UInt8[np.ndarray, "h w 3"] | None:
+        number = _texture(material)
+        if number is None or "source" not in self._document["textures"][number]:
             return None
-        image = self._document["images"][texture["source"]]
+        image = self._document["images"][self._document["textures"][number]["source"]]
         data = self._view_bytes(image["bufferView"]) if "bufferView" in image else self._uri_bytes(image.get("uri", ""))
         data = None if data is None else self._references.check_image(data, str(image.get("name", "a picture")))
         if data is None:
@@ -214,3 +211,8 @@ class _Pictures:
         if uri.startswith("data:"):
             return base64.b64decode(uri.partition(",")[2])
         return self._references.read(uri)
+
+
+def _texture(material: Json) -> int | None:
+    texture = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
+    return None if texture is None else texture["index"]

@@ -12,6 +12,8 @@ from jaxtyping import Float
 from diorama_core.importing.point_cloud import ScanPhoto
 
 OpeningKind = Literal["door", "window", "opening"]
+RESTS_M = 0.08
+"""How far the bottom of a box may be off what it stands on."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +57,12 @@ class MeasuredBox:
     """Whether the shares of its kinds say already how usual its size is for each."""
     fits: Mapping[str, float] = field(default_factory=dict)
     """How well shapes agree with the points, by id, 0 to 1; those that were not compared agree as the worst of them."""
+
+    def is_under(self, box: MeasuredBox) -> bool:
+        """Whether another box stands on it."""
+        top, bottom = self.centre[2] + self.size_m[2] / 2, box.centre[2] - box.size_m[2] / 2
+        off = np.abs(self.R_world_box.T @ (box.centre - self.centre))[:2]
+        return abs(float(top - bottom)) < RESTS_M and bool((off < self.size_m[:2] / 2).all())
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,8 @@ own, and an object that was hung below another one stands on it. What was not to
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -54,6 +56,19 @@ class Opened:
             return None
         camera = self.scene.camera
         return Inputs(self.photo, self.boxes, intrinsics=None if camera is None else camera.intrinsics)
+
+
+class Names:
+    """Ids of new objects: a word and a number."""
+
+    def __init__(self) -> None:
+        self._counts: Counter[str] = Counter()
+
+    def new(self, word: str) -> str:
+        """An id that was not given before."""
+        stem = re.sub(r"[^a-z0-9]+", "-", word.lower()).strip("-") or "object"
+        self._counts[stem] += 1
+        return f"{stem}-{self._counts[stem]}"
 
 
 def open_marked(file: MarkedFile) -> Opened:

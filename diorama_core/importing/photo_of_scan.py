@@ -116,13 +116,8 @@ def _camera(scene: Scene, artefacts: dict, inputs: Inputs, progress: Progress) -
 
 
 def _thing(item: SceneObject) -> MeasuredThing:
-    kinds = frozenset((item.category, *kinds_of_label(item.label)))
-    return MeasuredThing(kinds, _middle(item), item.pose.yaw_rad, item.size_m)
-
-
-def _middle(item: SceneObject) -> Float[np.ndarray, "3"]:
-    corners = item.corners_world
-    return (corners.min(axis=0) + corners.max(axis=0)) / 2
+    kinds, corners = frozenset((item.category, *kinds_of_label(item.label))), item.corners_world
+    return MeasuredThing(kinds, (corners.min(axis=0) + corners.max(axis=0)) / 2, item.pose.yaw_rad, item.size_m)
 
 
 def _floor(scene: Scene) -> Polygon:

@@ -23,7 +23,7 @@ from diorama_core.progress import Progress
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Scene
 from tests.importing.stages import write_stage
-from tests.importing.test_gltf import LIBRARY, edit, edited_room
+from tests.importing.test_gltf import LIBRARY, edited, edited_room
 from tests.primitives import furnished_room
 
 
@@ -42,7 +42,9 @@ def opened(path: Path, known: KnownShapes, folder: Path):
 def unmarked(tmp_path: Path, scene: Scene) -> Path:
     path = tmp_path / "foreign.glb"
     export_scene(scene, LIBRARY, path, "glb")
-    edit(path, lambda document: [n.pop("extras", None) for n in document["nodes"]])
+    with edited(path) as document:
+        for node in document["nodes"]:
+            node.pop("extras", None)
     return path
 
 

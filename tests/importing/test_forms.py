@@ -9,12 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from PIL import Image
-from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import InputError
 from diorama_core.export import export_scene
-from diorama_core.importing.depth_frames import FRAME_FORMS, cloud_of_frames
 from diorama_core.importing.forms import SceneParts, open_form, scan_in
 from diorama_core.importing.measured_cloud import measure_cloud
 from diorama_core.importing.parts import Part, join_flat_parts
@@ -23,12 +20,11 @@ from diorama_core.importing.point_files import is_text_cloud, read_points, read_
 from diorama_core.importing.room import room_of
 from diorama_core.importing.room_by_shape import shell_planes, slab_role
 from diorama_core.importing.scene_frame import frame_of_scene, likely_up
-from diorama_core.io.file_heads import head_of
 from diorama_core.library.ingest.models import read_model
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Plane
 from tests.importing.roomplan_files import write_json
-from tests.importing.scans import DEPTH, HEIGHT, WIDTH, cameras, room_meshes, room_points, write_app_scan
+from tests.importing.scans import DEPTH, WIDTH, room_meshes, room_points, write_app_scan
 from tests.importing.stages import write_stage
 from tests.primitives import PrimitiveLibrary, furnished_room
 
@@ -139,30 +135,6 @@ def test_points_in_plain_text_are_read(tmp_path: Path, suffix: str, first: str, 
     path.write_text(first + "\n".join(lines) + "\n")
     assert read_points(path).points == pytest.approx(points, abs=1e-3)
     assert not is_text_cloud("some words\nand more\nand more\n")
-
-
-def write_tum(folder: Path) -> Path:
-    """A folder of Polycam's frames rewritten as TUM RGB-D keeps them."""
-    write_app_scan(folder / "p", "polycam")
-    (folder / "t" / "depth").mkdir(parents=True)
-    listed, poses = [], []
-    for number, (camera, path) in enumerate(zip(cameras(), sorted((folder / "p").rglob("depth/*.png")), strict=True)):
-        depth = np.asarray(Image.open(path)).astype(np.int64) * 5
-        Image.fromarray(depth.astype(np.uint16)).save(folder / "t" / "depth" / f"{number}.png")
-        listed.append(f"{number}.0 depth/{number}.png")
-        q = Rotation.from_matrix(camera.T_world_camera[:3, :3]).as_quat()
-        poses.append(" ".join(f"{v:.6f}" for v in (number + 0.01, *camera.T_world_camera[:3, 3], *q)))
-    (folder / "t" / "depth.txt").write_text("# depth\n" + "\n".join(listed))
-    (folder / "t" / "groundtruth.txt").write_text("# poses\n" + "\n".join(poses))
-    return folder / "t"
-
-
-def test_depth_of_tum_is_in_fifths_of_a_millimetre(tmp_path: Path) -> None:
-    folder = write_tum(tmp_path)
-    form = next(f for f in FRAME_FORMS if f.tells(head_of(folder)))
-    assert form.name == "TUM RGB-D"
-    cloud = cloud_of_frames(folder, form)
-    assert np.ptp(np.quantile(cloud.points, [0.01, 0.99], axis=0), axis=0)[2] == pytest.approx(HEIGHT, abs=0.3)
 
 
 def test_polycams_frames_are_read_from_their_zip_and_as_the_folder_keyframes(tmp_path: Path) -> None:

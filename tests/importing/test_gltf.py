@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -41,10 +43,11 @@ def written(tmp_path, scene: Scene, **more):
     return path
 
 
-def edit(path, change) -> None:
-    """Rewrite a GLB's JSON as another program would that moves nodes."""
+@contextmanager
+def edited(path) -> Iterator[dict]:
+    """A GLB's JSON, rewritten as another program would that moves nodes."""
     document, binary = gltf_reader.read(path.read_bytes())
-    change(document)
+    yield document
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     body = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary
@@ -54,8 +57,7 @@ def edit(path, change) -> None:
 def test_positions_that_are_stored_as_integers_scale_nothing(tmp_path) -> None:
     """As gltf-transform quantises: the node of a mesh is stretched to what its integers stand for."""
     path = written(tmp_path, edited_room())
-
-    def quantise(document: dict) -> None:
+    with edited(path) as document:
         carrying = {n["mesh"] for n in document["nodes"] if "mesh" in n and n.get("children")}
         for number, mesh in enumerate(document["meshes"]):
             if number in carrying:
@@ -75,8 +77,6 @@ def test_positions_that_are_stored_as_integers_scale_nothing(tmp_path) -> None:
                 M[:3, 3] += M[:3, :3] @ (low + half)
                 M[:3, :3] *= half
                 row["matrix"] = M.T.reshape(-1).tolist()
-
-    edit(path, quantise)
     assert back(path).scene == edited_room()
     assert back(path).changes == ()
 
@@ -101,12 +101,9 @@ def test_an_untouched_file_gives_the_same_scene(tmp_path) -> None:
 def test_moving_a_supporter_carries_what_stands_on_it(tmp_path) -> None:
     scene = edited_room()
     path = written(tmp_path, scene)
-
-    def change(document: dict) -> None:
+    with edited(path) as document:
         found = node(document, "table (t)")
         found["translation"] = [v + d for v, d in zip(found["translation"], (0.5, -0.25, 0.0), strict=True)]
-
-    edit(path, change)
     found = back(path)
     for name in ("t", "b"):
         moved = found.scene.object(name).pose.position - scene.object(name).pose.position
@@ -123,13 +120,10 @@ def test_moving_a_supporter_carries_what_stands_on_it(tmp_path) -> None:
 def test_turned_and_stretched(tmp_path) -> None:
     scene = furnished_room(LIBRARY)
     path = written(tmp_path, scene)
-
-    def change(document: dict) -> None:
+    with edited(path) as document:
         found = node(document, "chair (c1)")
         found["rotation"] = Rotation.from_euler("z", 100, degrees=True).as_quat().tolist()
         found["scale"] = [1.0, 1.5, 0.8]
-
-    edit(path, change)
     pose = back(path).scene.object("c1").pose
     assert pose.yaw_rad == pytest.approx(np.radians(100), abs=1e-6)
     np.testing.assert_allclose(pose.scale, [1.0, 1.5, 0.8], atol=1e-6)
@@ -138,15 +132,12 @@ def test_turned_and_stretched(tmp_path) -> None:
 def test_deleted_and_copied_nodes(tmp_path) -> None:
     scene = furnished_room(LIBRARY)
     path = written(tmp_path, scene)
-
-    def change(document: dict) -> None:
+    with edited(path) as document:
         index = next(i for i, n in enumerate(document["nodes"]) if n["name"] == "chair (c1)")
         copied = {**node(document, "chair (c2)"), "name": "chair.001", "translation": [0.0, 1.0, 0.54]}
         document["nodes"].append(copied)
         branch = node(document, "objects")["children"]
         branch[branch.index(index)] = len(document["nodes"]) - 1
-
-    edit(path, change)
     found = back(path)
     assert not found.scene.has_object("c1")
     copies = [o for o in found.scene.objects if o.category == "chair" and o.id != "c2"]
@@ -161,8 +152,7 @@ def test_deleted_and_copied_nodes(tmp_path) -> None:
 def test_hung_below_another_node_it_stands_on_that(tmp_path) -> None:
     scene = furnished_room(LIBRARY)
     path = written(tmp_path, scene)
-
-    def change(document: dict) -> None:
+    with edited(path) as document:
         nodes = document["nodes"]
         index = nodes.index(node(document, "chair (c1)"))
         for n in nodes:
@@ -170,8 +160,6 @@ def test_hung_below_another_node_it_stands_on_that(tmp_path) -> None:
             if not n["children"]:
                 del n["children"]
         node(document, "table (t)").setdefault("children", []).append(index)
-
-    edit(path, change)
     edge = back(path).scene.support_of("c1")
     assert edge is not None
     assert (edge.parent, edge.relation) == ("t", "placed on")
@@ -180,11 +168,8 @@ def test_hung_below_another_node_it_stands_on_that(tmp_path) -> None:
 def test_the_whole_room_moved_in_another_program(tmp_path) -> None:
     scene = furnished_room(LIBRARY)
     path = written(tmp_path, scene)
-
-    def change(document: dict) -> None:
+    with edited(path) as document:
         node(document, "diorama")["translation"] = [1.0, 0.0, 0.0]
-
-    edit(path, change)
     found = back(path).scene
     np.testing.assert_allclose(
         found.plane("floor").polygon, scene.plane("floor").polygon + np.array([1, 0, 0]), atol=1e-6
@@ -223,11 +208,8 @@ def test_foreign_and_broken_files(tmp_path) -> None:
     with pytest.raises(InputError, match=r"foreign\.glb"):
         read_marked_gltf(path)
     damaged = written(tmp_path, furnished_room(LIBRARY))
-
-    def change(document: dict) -> None:
+    with edited(damaged) as document:
         found = node(document, "diorama")["extras"]
         found["diorama"] = found["diorama"].replace('"units": "metres"', '"units": "feet"')
-
-    edit(damaged, change)
     with pytest.raises(InputError, match="units"):
         back(damaged)

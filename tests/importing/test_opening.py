@@ -19,7 +19,7 @@ from diorama_core.importing.marked import as_bytes
 from diorama_core.importing.opening import open_marked, pose_of
 from diorama_core.scene.types import Scene
 from tests.export.scenes import scene_of
-from tests.importing.test_gltf import edit
+from tests.importing.test_gltf import edited
 
 
 def photo_of(scene: Scene) -> np.ndarray:
@@ -81,12 +81,9 @@ def boxes(scene: Scene) -> dict[str, np.ndarray]:
 
 def move_node(path: Path, object_id: str, by_m: np.ndarray) -> None:
     """Move an object's node in a GLB, as a program would that knows nothing of Diorama."""
-
-    def change(document: dict[str, Any]) -> None:
+    with edited(path) as document:
         node = next(n for n in document["nodes"] if n.get("extras", {}).get("id") == object_id)
         node["translation"] = [float(v + d) for v, d in zip(node["translation"], by_m, strict=True)]
-
-    edit(path, change)
 
 
 def move_prim(path: Path, object_id: str, by_m: np.ndarray) -> None:
