@@ -20,10 +20,9 @@ from diorama_core.importing.gltf import read_marked_gltf
 from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.measured_types import MeasuredRoom
 from diorama_core.importing.parts import Part, parts_of_gltf, parts_of_usd, split_scene
-from diorama_core.importing.point_cloud import PointCloud, points_of_mesh
+from diorama_core.importing.point_cloud import PointCloud, frame_of_scene, points_of_mesh
 from diorama_core.importing.point_files import POINT_FORMS, read_points
 from diorama_core.importing.roomplan import read_room_plan
-from diorama_core.importing.scene_frame import frame_of_scene
 from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.importing.usd import read_marked_usd
 from diorama_core.io.contained import content_of, unpack

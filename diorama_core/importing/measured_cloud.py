@@ -23,10 +23,9 @@ from diorama_core.importing.measured_types import (
     MeasuredRoom,
     MeasuredWall,
 )
-from diorama_core.importing.point_cloud import PointCloud
+from diorama_core.importing.point_cloud import LEVEL_M, PointCloud, likely_up, sharpness
 from diorama_core.importing.scanned_boxes import OFF_M, ScannedRoom, boxes_in, is_part_of, rugs_in
 from diorama_core.importing.scanned_openings import find_openings
-from diorama_core.importing.scene_frame import LEVEL_M, likely_up, sharpness
 from diorama_core.scene.types import yaw_rotation
 
 MAX_REACH_M = 60.0

@@ -24,7 +24,6 @@ from jaxtyping import Bool, Float
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
 from diorama_core.importing.array_clouds import is_array_cloud, is_float_dump, read_array_cloud, read_float_dump
-from diorama_core.importing.data_set_frames import DATA_SET_FORMS
 from diorama_core.importing.depth_frames import FRAME_FORMS, UP_Y, UP_Z, cloud_of_frames
 from diorama_core.importing.point_cloud import (
     MAX_POINTS,
@@ -309,7 +308,7 @@ POINT_FORMS = (
         "points as bare floats, as of KITTI", ".bin", is_float_dump, partial(_from_array, read_float_dump, "")
     ),
     *(PointForm(form.name, "a folder, or its zip", form.tells, partial(cloud_of_frames, form=form))
-      for form in (*FRAME_FORMS, *DATA_SET_FORMS)),
+      for form in FRAME_FORMS),
     PointForm(
         "the mesh of a scanner app", "a folder, or its zip",
         lambda h: h.is_folder and "scene.json" not in h.names and any(_meshes_in(h.path)), _from_app_mesh,

@@ -32,11 +32,11 @@ from diorama_core.importing.roomplan_parts import (
     kinds_of,
     move,
     name_floors,
+    read_usd,
     storey_notes,
     without_unusable,
     words,
 )
-from diorama_core.importing.roomplan_usd import read_usd
 from diorama_core.io.bounded import read_json, shorten
 from diorama_core.library.ingest.usd_stage import Z_UP
 

@@ -9,7 +9,6 @@ from typing import Any
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import parse_json
-from diorama_core.perception.inputs.boxes.dictionaries import box_numbers, box_of, numbers, score_of, word_of
 from diorama_core.perception.inputs.boxes.entry import (
     UNNAMED,
     BoxEntry,
@@ -21,7 +20,15 @@ from diorama_core.perception.inputs.boxes.entry import (
     from_layout,
     rows_of_picture,
 )
-from diorama_core.perception.inputs.boxes.nested import PICTURE_FILE, size_in
+from diorama_core.perception.inputs.boxes.nested import (
+    PICTURE_FILE,
+    box_numbers,
+    box_of,
+    numbers,
+    score_of,
+    size_in,
+    word_of,
+)
 from diorama_core.perception.inputs.source import Source
 
 _NAME_FILES = (

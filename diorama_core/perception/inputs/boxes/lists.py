@@ -9,17 +9,6 @@ from typing import Any
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import shorten
 from diorama_core.library.labels import names_a_kind
-from diorama_core.perception.inputs.boxes.dictionaries import (
-    FIGURES,
-    box_numbers,
-    find_unused_words,
-    has_class_number,
-    keys_of,
-    numbers,
-    objects_of,
-    score_of,
-    word_of,
-)
 from diorama_core.perception.inputs.boxes.entry import (
     UNNAMED,
     BoxEntry,
@@ -32,13 +21,22 @@ from diorama_core.perception.inputs.boxes.entry import (
     picture_of,
 )
 from diorama_core.perception.inputs.boxes.nested import (
+    FIGURES,
+    box_numbers,
     class_names_in,
+    find_unused_words,
     has_box,
+    has_class_number,
+    keys_of,
     lists_in,
+    numbers,
+    objects_of,
     picture_name,
     pictures_in,
     rows_of_photo,
+    score_of,
     size_in,
+    word_of,
 )
 
 _COLUMNS = ("boxes", "bboxes", "predboxes", "xyxy", "detectionboxes", "bbox")

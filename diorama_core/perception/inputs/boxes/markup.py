@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from xml.etree.ElementTree import Element
 
-from diorama_core.perception.inputs.boxes.dictionaries import box_of, numbers, size_of
 from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxFile, BoxText, Corners, entries_of, picture_of
+from diorama_core.perception.inputs.boxes.nested import box_of, numbers, size_of
 
 
 def is_voc(text: BoxText) -> bool:

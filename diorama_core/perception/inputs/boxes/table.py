@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element, ParseError, XMLParser
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import parse_json
-from diorama_core.perception.inputs.boxes import data_sets, lines, lists, markup, tools
+from diorama_core.perception.inputs.boxes import lines, lists, markup, tools
 from diorama_core.perception.inputs.boxes.entry import BoxFile, BoxText, Size
 from diorama_core.perception.inputs.source import Form, Source
 
@@ -21,8 +21,8 @@ BOX_FORMS: tuple[Form[BoxText, BoxFile], ...] = (
         "COCO data set",
         "COCO, CVAT, Roboflow, Label Studio, fiftyone",
         "boxes (x, y, width, height) with their categories, of the photo's file name; scaled by the stated size",
-        data_sets.is_data_set,
-        data_sets.read_data_set,
+        tools.is_data_set,
+        tools.read_data_set,
     ),
     Form(
         "LabelMe",
@@ -43,8 +43,8 @@ BOX_FORMS: tuple[Form[BoxText, BoxFile], ...] = (
         "COCO results",
         "COCO API, Detectron2, MMDetection",
         "boxes (x, y, width, height); names only with the data set's file (`categories`) beside",
-        data_sets.is_results,
-        data_sets.read_results,
+        tools.is_results,
+        tools.read_results,
     ),
     Form(
         "list of boxes",

@@ -23,11 +23,12 @@ from diorama_core.perception.inputs.depth.kinds import (
     rays_of,
 )
 from diorama_core.perception.inputs.depth.numpy_files import DepthContent, RawDepth
-from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
 from diorama_core.perception.inputs.depth.scale import (
     AmbiguousDepthError,
     DepthAnswer,
     focal_of_planes,
+    metric_depth,
+    metric_of_bent,
     scale_evidence,
     unit_of,
 )

@@ -15,13 +15,17 @@ from PIL import Image, ImageDraw
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import parse_json
-from diorama_core.perception.inputs.boxes.data_sets import is_data_set, photo_of_data_set, rows_of_results
-from diorama_core.perception.inputs.boxes.dictionaries import objects_of, size_of
 from diorama_core.perception.inputs.boxes.entry import BoxText, Size
 from diorama_core.perception.inputs.boxes.markup import image_of, is_cvat
-from diorama_core.perception.inputs.boxes.nested import size_in
+from diorama_core.perception.inputs.boxes.nested import objects_of, size_in, size_of
 from diorama_core.perception.inputs.boxes.table import parse_box_text
-from diorama_core.perception.inputs.boxes.tools import is_via, regions_of
+from diorama_core.perception.inputs.boxes.tools import (
+    is_data_set,
+    is_via,
+    photo_of_data_set,
+    regions_of,
+    rows_of_results,
+)
 from diorama_core.perception.inputs.masks.pictures import MAX_MASK_MEGAPIXELS, MaskMap, one_object, paint_masks
 from diorama_core.perception.inputs.source import Source
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from diorama_core.perception.inputs.boxes.dictionaries import objects_of, size_of
-from diorama_core.perception.inputs.boxes.nested import class_names_in, lists_in, pictures_in
+from diorama_core.perception.inputs.boxes.nested import class_names_in, lists_in, objects_of, pictures_in, size_of
 
 ROWS = [{"bbox": [1, 2, 30, 40], "class": "chair"}]
 BARE = [{"bbox": [1, 2, 30, 40]}]

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.perception.inputs.boxes.dictionaries import word_of
+from diorama_core.perception.inputs.boxes.nested import word_of
 from diorama_core.perception.inputs.boxes.reading import read_boxes, understand_word
 from diorama_core.perception.inputs.source import Source
 from tests.perception.inputs.files import HEIGHT, WIDTH, box, boxes_json, decoded, encoded, picture, refusal

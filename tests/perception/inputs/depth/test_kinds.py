@@ -10,11 +10,12 @@ import pytest
 from diorama_core.perception.inputs.depth.kinds import Known, depth_order, depth_readings, rays_of
 from diorama_core.perception.inputs.depth.planes import PlaneFit, planes_of, sample_depth
 from diorama_core.perception.inputs.depth.reading import choose_reading
-from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
 from diorama_core.perception.inputs.depth.scale import (
     AmbiguousDepthError,
     ScaleEvidence,
     focal_of_planes,
+    metric_depth,
+    metric_of_bent,
     scale_evidence,
     unit_of,
 )
