@@ -17,8 +17,7 @@ from diorama_core.importing.measured_cloud import measure_cloud
 from diorama_core.importing.parts import Part, join_flat_parts
 from diorama_core.importing.point_cloud import PointCloud, frame_of_scene, likely_up
 from diorama_core.importing.point_files import is_text_cloud, read_points, read_splat_ply
-from diorama_core.importing.room import room_of
-from diorama_core.importing.room_by_shape import shell_planes, slab_role
+from diorama_core.importing.room import room_of, shell_planes, slab_role
 from diorama_core.library.ingest.models import read_model
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Plane

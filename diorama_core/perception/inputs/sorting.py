@@ -49,8 +49,7 @@ def recognise(content: bytes, name: str, photo_size: tuple[int, int] | None) -> 
         return (Recognised("confidence", "confidence of depth"),)
     if content.startswith((b"\x93NUMPY", b"PK\x03\x04")):
         return _recognise_array(source, photo_size)
-    kind = raw_kind(content)
-    if kind is not None:
+    if raw_kind(content) is not None:
         return (Recognised("photo", "a camera's raw photo"),)
     picture = _picture(source)
     if picture is not None:
@@ -103,10 +102,10 @@ def _recognise_picture(
         return (Recognised("masks", "a picture of masks"),)
     if pixels[:, 3].min() < 128:
         return Recognised("masks", "one object cut out of the photo"), photo
+    grey = bool((pixels[:, :3] == pixels[:, :1]).all())
     if picture.mode == "RGB" and picture.format == "PNG" and depth_of_colours(np.asarray(picture)) is not None:
         packed = Recognised("depth", "a depth map packed in colours")
-        return (photo, packed) if bool((pixels[:, :3] == pixels[:, :1]).all()) else (packed, photo)
-    grey = bool((pixels[:, :3] == pixels[:, :1]).all())
+        return (photo, packed) if grey else (packed, photo)
     return (photo, Recognised("depth", "a depth map of 8 bits")) if grey else (photo,)
 
 

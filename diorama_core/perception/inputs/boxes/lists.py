@@ -72,7 +72,6 @@ def read_entries(
     *,
     layout: Layout | None = None,
     size: Size | None = None,
-    unit: Unit | None = None,
     names: Mapping[int, str] | None = None,
 ) -> BoxFile:
     """Annotations whose keys may be any program's.
@@ -82,13 +81,13 @@ def read_entries(
         name: of the file.
         layout: how four numbers are to be read, where the file says so.
         size: of the annotated picture, where the file says so.
-        unit: of the coordinates, where the file says so.
         names: of the numbers that stand for classes, where the file says so.
 
     Raises:
         InputError: an entry has no box, or none of four finite numbers.
     """
     boxes, ambiguous = [], True
+    unit: Unit = "pixels"
     rows = [r for r in rows if has_box(r) or word_of(r).lower() != "background"]  # Grounded-SAM lists it as well
     for index, row in enumerate(rows):
         box = box_numbers(row, f"{name}: entry {index}")
@@ -105,7 +104,7 @@ def read_entries(
         unit = "thousandths" if turned else unit
     words, notes = _words(rows, boxes)
     entries = tuple(BoxEntry(e.corners, w, e.score) for e, w in zip(boxes, words, strict=True))
-    return BoxFile(entries, size, unit or "pixels", ambiguous, notes)
+    return BoxFile(entries, size, unit, ambiguous, notes)
 
 
 def is_bare(text: BoxText) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from jaxtyping import Bool, Int32, Shaped
 
@@ -174,21 +176,20 @@ def match_instances(instances: Int32[np.ndarray, "h w"], boxes: tuple[LabelledBo
     it. A box goes whole to the mask that overlaps it most; further masks of the same box keep their own extent.
     """
     extents = {k: _extent(instances == k) for k in range(1, int(instances.max()) + 1)}
-    best: dict[int, tuple[float, int]] = {}
     given = np.array([b.box for b in boxes], dtype=np.float64).reshape(-1, 4)
+    best: dict[int, tuple[float, int]] = {}
     for k, extent in extents.items():
         overlaps = box_iou(np.array(extent), given)
         if overlaps.size and overlaps.max() > 0:
             best[k] = (float(overlaps.max()), int(overlaps.argmax()))
+    owners: dict[int, int] = {}
+    for k in sorted(best, key=lambda k: (-best[k][0], k)):
+        owners.setdefault(best[k][1], k)
+    unnamed = LabelledBox((0.0, 0.0, 0.0, 0.0), UNKNOWN.name, UNKNOWN.name)
     matched: list[tuple[int, LabelledBox]] = []
     for k, extent in extents.items():
-        if k not in best:
-            matched.append((k, LabelledBox(extent, UNKNOWN.name, UNKNOWN.name)))
-            continue
-        score, index = best[k]
-        box = boxes[index]
-        is_owner = all(o == k or i != index or (s, -o) < (score, -k) for o, (s, i) in best.items())
-        matched.append((k, box if is_owner else LabelledBox(extent, box.category, box.label, box.score)))
+        box = boxes[best[k][1]] if k in best else unnamed
+        matched.append((k, box if k in best and owners[best[k][1]] == k else replace(box, box=extent)))
     return tuple(matched)
 
 

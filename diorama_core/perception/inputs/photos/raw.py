@@ -6,6 +6,7 @@ import io
 import re
 import struct
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -64,17 +65,28 @@ def raw_kind(data: bytes) -> str | None:
     return next((name for word, name in _MAKERS.items() if word in maker), "camera raw")
 
 
-def largest_picture(source: Source, kind: str) -> tuple[Source, int, tuple[str, ...]]:
-    """The largest picture in a raw file as a file of its own, its EXIF orientation, and what was understood.
+@dataclass(frozen=True)
+class PhotoFile:
+    """The picture of a file, as a file of its own."""
+
+    source: Source
+    orientation: int | None = None
+    """EXIF orientation of the file around it; None where the picture's own counts."""
+    notes: tuple[str, ...] = ()
+
+
+def largest_picture(source: Source) -> PhotoFile:
+    """The largest picture in a raw file.
 
     Raises:
         InputError: when it holds none that can be read.
     """
+    kind = raw_kind(source.data)
     largest = max(_pictures(source.data), key=lambda p: p[0][0] * p[0][1], default=None)
     if largest is None or max(largest[0]) < SMALL_SIDE_PX:
         developed = _develop(source)
         if developed is not None:
-            return developed, 1, (f"{source.name} is a camera's raw file ({kind}); it was developed",)
+            return PhotoFile(developed, 1, (f"{source.name} is a camera's raw file ({kind}); it was developed",))
     if largest is None:
         raise InputError(
             f"{source.name}: this is a camera's raw file ({kind}) without a readable picture; "
@@ -83,7 +95,7 @@ def largest_picture(source: Source, kind: str) -> tuple[Source, int, tuple[str, 
     (width, height), content = largest
     note = f"{source.name} is a camera's raw file ({kind}); its largest picture ({width} x {height}) is used"
     orientation = next((d.get(_ORIENTATION, (1,))[0] for _, d in _directories(source.data)), 1)
-    return Source(content, source.name, source.path, source.companions), int(orientation), (note,)
+    return PhotoFile(replace(source, data=content), int(orientation), (note,))
 
 
 def _pictures(data: bytes) -> Iterator[tuple[tuple[int, int], bytes]]:
@@ -132,7 +144,7 @@ def _develop(source: Source) -> Source | None:
         return None
     stream = io.BytesIO()
     Image.fromarray(rgb).save(stream, "PPM")
-    return Source(stream.getvalue(), source.name, source.path, source.companions)
+    return replace(source, data=stream.getvalue())
 
 
 def _directories(data: bytes) -> Iterator[tuple[int, Mapping[int, Any]]]:

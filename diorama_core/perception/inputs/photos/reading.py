@@ -16,7 +16,7 @@ from diorama_core.errors import InputError, SphericalPhotoError
 from diorama_core.perception.camera.exif import focal_from_exif
 from diorama_core.perception.inputs.photos.decoding import dark_colours, eight_bits, is_heif, load_pixels, open_picture
 from diorama_core.perception.inputs.photos.frame import PhotoFrame, plain_borders
-from diorama_core.perception.inputs.photos.raw import largest_picture, raw_kind
+from diorama_core.perception.inputs.photos.raw import PhotoFile, largest_picture, raw_kind
 from diorama_core.perception.inputs.source import Form, Source, form_of
 
 MIN_SIDE_PX = 32
@@ -235,23 +235,13 @@ def _darkness(rgb: UInt8[np.ndarray, "h w 3"]) -> tuple[str, ...]:
     return ("the photo is nearly black; little can be seen in it",)
 
 
-@dataclass(frozen=True)
-class PhotoFile:
-    """The picture of a file, as a file of its own."""
-
-    source: Source
-    orientation: int | None = None
-    """EXIF orientation of the file around it; None where the picture's own counts."""
-    notes: tuple[str, ...] = ()
-
-
 PHOTO_FORMS: tuple[Form[Source, PhotoFile], ...] = (
     Form(
         "camera raw (DNG, CR2, CR3, NEF, ARW, RAF, RW2, ORF)",
         "cameras, phones",
         "the largest picture within; developed where that is a thumbnail and `rawpy` is installed (`diorama[raw]`)",
         lambda source: raw_kind(source.data) is not None,
-        lambda source: PhotoFile(*largest_picture(source, raw_kind(source.data) or "camera raw")),
+        largest_picture,
     ),
     Form("HEIC, HEIF", "iPhones, Samsung", "the main picture, upright", lambda source: is_heif(source.data), PhotoFile),
     Form(
