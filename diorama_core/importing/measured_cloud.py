@@ -18,11 +18,7 @@ from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.ops import unary_union
 
 from diorama_core.errors import InputError
-from diorama_core.importing.measured_types import (
-    MeasuredFloor,
-    MeasuredRoom,
-    MeasuredWall,
-)
+from diorama_core.importing.measured_types import MeasuredFloor, MeasuredRoom, MeasuredWall
 from diorama_core.importing.point_cloud import LEVEL_M, PointCloud, likely_up, sharpness
 from diorama_core.importing.scanned_boxes import OFF_M, ScannedRoom, boxes_in, is_part_of, rugs_in
 from diorama_core.importing.scanned_openings import find_openings

@@ -18,13 +18,7 @@ from jaxtyping import Float
 from shapely.geometry import Polygon
 
 from diorama_core.errors import InputError
-from diorama_core.importing.measured_types import (
-    MeasuredBox,
-    MeasuredOpening,
-    MeasuredRoom,
-    MeasuredWall,
-    OpeningKind,
-)
+from diorama_core.importing.measured_types import MeasuredBox, MeasuredOpening, MeasuredRoom, MeasuredWall, OpeningKind
 from diorama_core.importing.roomplan_parts import (
     MAX_PARTS,
     box_of,

@@ -25,10 +25,7 @@ from scipy.spatial import cKDTree
 from shapely.geometry import Polygon, box
 
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.importing.measured_types import (
-    MeasuredBox,
-    MeasuredOpening,
-)
+from diorama_core.importing.measured_types import MeasuredBox, MeasuredOpening
 from diorama_core.library.taxonomy import CARRIED_KINDS, CATEGORIES, RUGS, UNKNOWN
 from diorama_core.scene.types import yaw_rotation
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from jaxtyping import Bool, Int32, Shaped
 
@@ -185,11 +183,11 @@ def match_instances(instances: Int32[np.ndarray, "h w"], boxes: tuple[LabelledBo
     owners: dict[int, int] = {}
     for k in sorted(best, key=lambda k: (-best[k][0], k)):
         owners.setdefault(best[k][1], k)
-    unnamed = LabelledBox((0.0, 0.0, 0.0, 0.0), UNKNOWN.name, UNKNOWN.name)
     matched: list[tuple[int, LabelledBox]] = []
     for k, extent in extents.items():
-        box = boxes[best[k][1]] if k in best else unnamed
-        matched.append((k, box if k in best and owners[best[k][1]] == k else replace(box, box=extent)))
+        box = boxes[best[k][1]] if k in best else LabelledBox(extent, UNKNOWN.name, UNKNOWN.name)
+        is_owner = k in best and owners[best[k][1]] == k
+        matched.append((k, box if is_owner else LabelledBox(extent, box.category, box.label, box.score)))
     return tuple(matched)
 
 
