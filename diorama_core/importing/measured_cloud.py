@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
-from shapely.geometry import MultiPolygon, Polygon, box
+from shapely.geometry import Polygon, box
 from shapely.ops import unary_union
 
 from diorama_core.errors import InputError
@@ -22,6 +22,7 @@ from diorama_core.importing.measured_types import MeasuredFloor, MeasuredRoom, M
 from diorama_core.importing.point_cloud import LEVEL_M, PointCloud, likely_up, sharpness
 from diorama_core.importing.scanned_boxes import OFF_M, ScannedRoom, boxes_in, is_part_of, rugs_in
 from diorama_core.importing.scanned_openings import find_openings
+from diorama_core.importing.storeys import largest_polygon
 from diorama_core.scene.types import yaw_rotation
 
 MAX_REACH_M = 60.0
@@ -187,9 +188,8 @@ def _outline(points: Float[np.ndarray, "n 3"], top_m: float, *, walls_alone: boo
             grid = np.unique(np.floor((inside - [x0, y0]) / SPAN_M).astype(int), axis=0)
             if walls_alone or len(grid) * SPAN_M**2 >= SCANNED_SHARE * (x1 - x0) * (y1 - y0):
                 cells.append(box(x0, y0, x1, y1))
-    whole = unary_union(cells)
-    largest = max(whole.geoms, key=lambda p: p.area) if isinstance(whole, MultiPolygon) else whole
-    if not isinstance(largest, Polygon) or largest.is_empty:
+    largest = largest_polygon(unary_union(cells))
+    if largest is None:
         low, high = np.quantile(plan, [0.005, 0.995], axis=0)
         return box(*low, *high)
     return Polygon(largest.exterior).simplify(0.01)

@@ -87,8 +87,3 @@ class MeasuredRoom:
     notes: tuple[str, ...] = field(default=())
     photos: tuple[ScanPhoto, ...] = ()
     """Taken while the room was measured, their cameras in the world."""
-
-    @property
-    def floor(self) -> Float[np.ndarray, "n 2"] | None:
-        """Outline of the first floor, where the file has one."""
-        return self.floors[0].outline if self.floors else None

@@ -18,7 +18,7 @@ from diorama_core.importing.marked import MarkedFile
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.usd_meshes import usd_scene
 from diorama_core.library.ingest.usd_stage import Z_UP, open_stage, usd_errors, world_of
-from diorama_core.scene.types import SceneObject
+from diorama_core.scene.types import SceneObject, yaw_rotation
 
 LARGEST_OBJECT_M = 3.5
 """Groups wider than this are rooms or collections, not one object."""
@@ -56,8 +56,7 @@ class Part:
     @property
     def turn(self) -> Float[np.ndarray, "3 3"]:
         """Own axes to the world's."""
-        c, s = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
-        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        return yaw_rotation(self.yaw_rad)
 
     @property
     def local_scene(self) -> trimesh.Scene:

@@ -26,6 +26,7 @@ from diorama_core.importing.measured_types import (
     MeasuredWall,
     OpeningKind,
 )
+from diorama_core.importing.storeys import largest_polygon
 from diorama_core.io.bounded import shorten
 from diorama_core.library.ingest.usd_stage import Z_UP
 from diorama_core.library.labels import meanings
@@ -298,6 +299,4 @@ def _outline_of(points: Float[np.ndarray, "n 3"], counts: Any, indices: Any) -> 
     if len(numbers) != ends[-1] or (len(numbers) and not 0 <= numbers.min() <= numbers.max() < len(points)):
         raise InputError("the file has a mesh whose faces make no sense; export the scan again")
     faces = [Polygon(points[face, :2]).buffer(0) for face in np.split(numbers, ends[:-1]) if len(face) >= 3]
-    whole = unary_union(faces)
-    largest = max(whole.geoms, key=lambda p: p.area) if isinstance(whole, MultiPolygon) else whole
-    return largest if isinstance(largest, Polygon) else Polygon()
+    return largest_polygon(unary_union(faces)) or Polygon()

@@ -62,10 +62,8 @@ def test_a_foreign_glb_becomes_objects_in_a_room(tmp_path, known: KnownShapes) -
             np.testing.assert_allclose(k(mine.corners_world, axis=0), k(item.corners_world, axis=0), atol=1e-3)
     ball = next(o for o in found.objects if "ball" in o.label)
     edge = found.support_of(ball.id)
-    assert edge is not None
     assert "table" in found.object(edge.parent).label
     chair = found.support_of(next(o for o in found.objects if "chair (c1)" in o.label).id)
-    assert chair is not None
     assert chair.parent == "floor"
 
 
@@ -82,7 +80,6 @@ def test_copies_share_a_shape(tmp_path, known: KnownShapes) -> None:
     assert len({o.shape_id for o in result.scene.objects}) == 1
     assert result.changes == ("the file has no floor: there is one under the lowest object",)
     floor = result.scene.architecture.floor
-    assert floor is not None
     assert floor.centre[2] == pytest.approx(0.1, abs=1e-6)
     turned = sorted(float(o.pose.yaw_rad) for o in result.scene.objects)
     assert turned[1] - turned[0] == pytest.approx(0.9, abs=1e-3) or turned[2] - turned[1] == pytest.approx(
@@ -147,7 +144,6 @@ def test_shapes_that_no_library_has_come_out_of_the_file(tmp_path, known: KnownS
     path = tmp_path / "room.glb"
     export_scene(scene, LIBRARY, path, "glb")
     marked = read_mark(path)
-    assert marked is not None
     found = open_marked(marked).scene
     sink = StoredLibrary(tmp_path / "models", create=True)
     take_missing_shapes(path, marked, found, {"table", "ball"}, sink, Progress(), known)

@@ -27,7 +27,7 @@ def sides(polygon: Polygon) -> list[float]:
 def test_walls_floor_and_boxes_are_where_the_points_are(every: int, off_m: float) -> None:
     room = measure_cloud(PointCloud(room_points()[::every], UP))
     assert len(room.walls) == 4
-    assert sides(Polygon(room.floor)) == pytest.approx([DEPTH, DEPTH, WIDTH, WIDTH], abs=0.02)
+    assert sides(Polygon(room.floors[0].outline)) == pytest.approx([DEPTH, DEPTH, WIDTH, WIDTH], abs=0.02)
     assert max(w.polygon[:, 2].max() for w in room.walls) == pytest.approx(HEIGHT, abs=0.02)
     assert len(room.boxes) == len(FURNITURE)
     found = sorted((sorted(b.size_m) for b in room.boxes), key=max)
@@ -58,7 +58,7 @@ def test_a_corner_that_is_not_of_the_room_is_left_out() -> None:
     room = measure_cloud(PointCloud(room_points(corner=True), UP))
     assert len(room.walls) == 6
     area = WIDTH * DEPTH - (WIDTH / 2 - 0.6) * (DEPTH / 2 - 0.3)
-    assert Polygon(room.floor).area == pytest.approx(area, rel=0.02)
+    assert Polygon(room.floors[0].outline).area == pytest.approx(area, rel=0.02)
 
 
 def test_the_room_opens_as_a_scene_whose_things_stand_with_their_backs_to_walls() -> None:
@@ -100,7 +100,7 @@ def test_a_room_without_floor_or_ceiling_has_its_walls_and_things(floor: bool, c
     height = points[:, 2] - points[:, 2].min()
     points = points[((height > 0.05) | floor) & ((height < HEIGHT - 0.05) | ceiling)]
     room = measure_cloud(PointCloud(points, UP))
-    assert sides(Polygon(room.floor)) == pytest.approx([DEPTH, DEPTH, WIDTH, WIDTH], abs=0.02)
+    assert sides(Polygon(room.floors[0].outline)) == pytest.approx([DEPTH, DEPTH, WIDTH, WIDTH], abs=0.02)
     assert len(room.boxes) == len(FURNITURE)
     said = " ".join(room.notes)
     assert ("no floor was scanned" in said, "no ceiling was scanned" in said) == (not floor, not ceiling)

@@ -24,7 +24,6 @@ from tests.importing.test_gltf import edited
 
 def photo_of(scene: Scene) -> np.ndarray:
     """A smooth picture of the camera's size."""
-    assert scene.camera is not None
     k = scene.camera.intrinsics
     across = np.linspace(20, 220, k.width)[None, :, None] + np.array([0.0, 15.0, 30.0])
     return np.broadcast_to(across, (k.height, k.width, 3)).astype(np.uint8)
@@ -39,7 +38,6 @@ def test_the_photo_comes_back_where_it_was_put_in(suffix: str, tmp_path: Path) -
     export_scene(scene, library, path, suffix, photo=photo_of(scene), options=options, provenance={"photo": "room.jpg"})
     opened = open_marked(read_mark(path))
     assert opened.changes == ()
-    assert opened.inputs is not None
     assert opened.inputs.photo.name == "room.jpg"
     assert opened.inputs.intrinsics == scene.camera.intrinsics
     np.testing.assert_allclose(opened.inputs.photo.rgb.astype(int), photo_of(scene).astype(int), atol=6)
@@ -60,7 +58,6 @@ def test_a_photo_that_cannot_be_used_is_left_out(photo: bytes, said: str, tmp_pa
     scene, library = scene_of("fittings")
     export_scene(scene, library, tmp_path / "room.glb", "glb")
     marked = read_mark(tmp_path / "room.glb")
-    assert marked is not None
     small = as_bytes(photo_text(np.zeros((300, 400, 3), np.uint8)))
     opened = open_marked(replace(marked, photo=photo or small))
     assert opened.photo is None

@@ -24,7 +24,6 @@ from tests.primitives import furnished_room
 
 def back(path):
     marked = read_marked_usd(path)
-    assert marked is not None
     return open_marked(marked)
 
 

@@ -232,7 +232,6 @@ def test_utf_16_is_text() -> None:
 def test_every_form_gives_the_same_boxes(name: str, document: object) -> None:
     source = Source(content(document), "file")
     form = form_of(BOX_FORMS, parse_box_text(source, "photo.png", SIZE))
-    assert form is not None
     assert form.name == name
     found, _ = read_boxes(source, decoded(*SIZE))
     assert [b.label for b in found] == ["chair", "sofa"]

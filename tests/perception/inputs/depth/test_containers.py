@@ -49,7 +49,6 @@ MILLIMETRES = (DEPTH * 1000).astype(np.uint16)
 def read(data: bytes, name: str = "depth") -> RawDepth:
     content = DepthContent(Source(data, name), (WIDTH * 4, HEIGHT * 4))
     form = form_of(DEPTH_FORMS, content)
-    assert form is not None
     return form.read(content)
 
 

@@ -72,7 +72,6 @@ def test_the_scale_is_told_by_things_and_the_floor(per_metre: float) -> None:
     values = DEPTH * per_metre
     reading = best(values)
     evidence = scale_evidence(values, reading.fit, FOCAL, THINGS)
-    assert evidence is not None
     assert np.exp(-evidence.log_scale) == pytest.approx(per_metre, rel=0.2)
     assert evidence.floor_height == pytest.approx(CAMERA_M * per_metre, rel=0.05)
     unit = unit_of(evidence, 1000.0)
@@ -85,7 +84,6 @@ def test_the_scale_is_told_by_things_and_the_floor(per_metre: float) -> None:
 def test_without_things_the_stated_unit_stays_and_an_odd_height_is_remarked() -> None:
     reading = best(DEPTH * 5.0)
     evidence = scale_evidence(DEPTH * 5.0, reading.fit, FOCAL, ())
-    assert evidence is not None
     assert "13.0 m high and the camera 8.0 m above the floor" in unit_of(evidence, 1.0).note
     unit = unit_of(replace(evidence, room_height=None), 1.0)
     assert (unit.per_metre, unit.question) == (1.0, "")
@@ -154,7 +152,6 @@ def test_depth_whose_planes_noise_hides_is_no_other_function() -> None:
 def test_the_heights_of_room_and_camera_contradict_a_unit_without_any_box(unit: float, likely: set[float]) -> None:
     values = (DEPTH * unit).astype(np.float32)
     evidence = scale_evidence(values, best(values, ()).fit, FOCAL, ())
-    assert evidence is not None
     assert evidence.heights_agree
     assert evidence.room_height == pytest.approx((CAMERA_M + CEILING_M) * unit, rel=0.05)
     found = unit_of(evidence, 1000.0)

@@ -110,7 +110,6 @@ class TestDepth:
 
     def read(self, data: bytes, **options: object) -> np.ndarray:
         depth = read_inputs(self.photo, depth=data, **options).inputs.depth_m
-        assert depth is not None
         assert depth.dtype == np.float32
         assert depth.shape == (HEIGHT, WIDTH)
         return depth
@@ -122,7 +121,6 @@ class TestDepth:
     def test_exr_in_metres(self) -> None:
         photo = encoded(picture(24 * 4, 20 * 4))
         depth = read_inputs(photo, depth=Path(__file__).parents[2] / "exr" / "zip.exr").inputs.depth_m
-        assert depth is not None
         assert (depth[2, 2], depth[-2, 2]) == (1.0, 2.0)
 
     def test_other_proportions_are_refused(self) -> None:

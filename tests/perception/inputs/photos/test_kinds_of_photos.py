@@ -63,11 +63,8 @@ def test_everything_given_moves_with_the_cut_frame() -> None:
     np.testing.assert_array_equal(inputs.photo.rgb, NOISE)
     assert inputs.photo.offset == (10, 10)
     assert inputs.boxes[0].box == (30, 20, 80, 50)
-    assert inputs.depth_m is not None
     assert (inputs.depth_m == 3.0).all()
-    assert inputs.instances is not None
     assert inputs.instances[20:50, 30:80].all()
-    assert inputs.intrinsics is not None
     assert (inputs.intrinsics.cx, inputs.intrinsics.cy) == (80.0, 60.0)
 
 

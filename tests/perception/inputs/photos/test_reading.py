@@ -94,7 +94,6 @@ class TestPhoto:
         photo, camera = read.inputs.photo, read.inputs.intrinsics
         assert (photo.width, photo.height, photo.original_size) == (1600, 1000, (3200, 2000))
         assert read.inputs.boxes[0].box == (200, 100, 400, 500)
-        assert camera is not None
         assert (camera.width, camera.fx, camera.cx, camera.cy) == (1600, 1200, 800, 500)
         assert read.warnings == ("the photo was reduced from 3200 x 2000 to 1600 x 1000 pixels",)
         assert not photo.rgb.flags.writeable
@@ -181,7 +180,5 @@ class TestHeader:
         exif = Image.Exif()
         exif.get_ifd(0x8769)[0xA405] = 26
         half = read_inputs(encoded(picture(2000, 1500), "JPEG", exif=exif), max_side=1000).inputs.photo.exif_focal_px
-        assert whole is not None
-        assert half is not None
         # 1600 is the default limit
         assert half / 1000 == pytest.approx(whole / 1600)
