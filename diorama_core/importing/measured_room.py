@@ -3,7 +3,7 @@ planes as they were measured and objects whose shapes fill the boxes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -184,25 +184,22 @@ def _object(names: Names, box: MeasuredBox, object_id: str, library: ShapeLibrar
     senses = dict(possible) if box.kinds_know_size else likeliest_kind(possible, box.size_m)
     kind = max(senses, key=lambda k: (senses[k], k))
     query = RetrievalQuery(kind, box.size_m, False, senses)
-    ranked = sorted(
-        (
-            (m.kind_factor * float(np.exp(-size_cost(m.shape.size_m, box.size_m))) * _fit(box, m.shape), m.shape)
-            for m in pool_for(library, query).members
-        ),
-        key=lambda row: (-row[0], row[1].id),
-    )[:KEEP]
-    candidates = tuple(Candidate(s.id, s.size_m, score, _filling(s, box)) for score, s in ranked)
-    best = ranked[0][1]
-    return SceneObject(
-        names.new(best.category),
-        box.label,
-        best.category,
-        best.id,
-        best.size_m,
-        candidates[0].pose,
-        candidates,
-        confidence=box.confidence,
-    )
+    scored = [
+        (m.kind_factor * float(np.exp(-size_cost(m.shape.size_m, box.size_m))) * _fit(box, m.shape), m.shape)
+        for m in pool_for(library, query).members
+    ]
+    ranked = sorted(scored, key=lambda row: (-row[0], row[1].id))
+    item = _shown(names, ranked[0][1].category, ranked, lambda shape: _filling(shape, box))
+    return replace(item, label=box.label, confidence=box.confidence)
+
+
+def _shown(
+    names: Names, category: str, ranked: Sequence[tuple[float, Shape]], pose: Callable[[Shape], Pose]
+) -> SceneObject:
+    """An object that the first of the shapes shows; the next ones may take its place."""
+    candidates = tuple(Candidate(s.id, s.size_m, score, pose(s)) for score, s in ranked[:KEEP])
+    best = candidates[0]
+    return SceneObject(names.new(category), category, category, best.shape_id, best.shape_size_m, best.pose, candidates)
 
 
 def _fit(box: MeasuredBox, shape: Shape) -> float:
@@ -271,17 +268,9 @@ def _hang(names: Names, opening: MeasuredOpening, wall: Plane, library: ShapeLib
     on_wall = opening.centre - (wall.normal @ opening.centre - wall.offset) * wall.normal
     shapes = library.in_category(opening.kind)
     size = np.array([STANDS_OUT_M, opening.width_m, opening.height_m])
-    ranked = sorted(shapes, key=lambda s: (size_cost(s.size_m[1:], size[1:]), s.id))[:KEEP]
+    ranked = [
+        (float(np.exp(-size_cost(s.size_m[1:], size[1:]))), s)
+        for s in sorted(shapes, key=lambda s: (size_cost(s.size_m[1:], size[1:]), s.id))
+    ]
     centre = on_wall + wall.normal * STANDS_OUT_M / 2
-    candidates = tuple(
-        Candidate(
-            s.id,
-            s.size_m,
-            float(np.exp(-size_cost(s.size_m[1:], size[1:]))),
-            Pose.upright(centre, yaw, size / np.array(s.size_m)),
-        )
-        for s in ranked
-    )
-    best = ranked[0]
-    name = names.new(opening.kind)
-    return SceneObject(name, opening.kind, opening.kind, best.id, best.size_m, candidates[0].pose, candidates)
+    return _shown(names, opening.kind, ranked, lambda s: Pose.upright(centre, yaw, size / np.array(s.size_m)))

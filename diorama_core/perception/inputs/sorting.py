@@ -9,15 +9,14 @@ import numpy as np
 from PIL import Image
 
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parse_box_text
+from diorama_core.perception.inputs.boxes.reading import BOX_FORMS, parse_box_text
 from diorama_core.perception.inputs.depth.channels import depth_of_colours
 from diorama_core.perception.inputs.depth.confidence import is_confidence
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
 from diorama_core.perception.inputs.depth.numpy_files import DepthContent
 from diorama_core.perception.inputs.masks.pictures import white_on_black
-from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture, what_it_is
+from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture, raw_kind, what_it_is
 from diorama_core.perception.inputs.photos.frame import ASPECT_TOLERANCE
-from diorama_core.perception.inputs.photos.raw import raw_kind
 from diorama_core.perception.inputs.source import Source, form_of
 
 Sort = Literal["photo", "boxes", "masks", "depth", "confidence"]

@@ -18,7 +18,7 @@ from diorama_core.io.bounded import parse_json
 from diorama_core.perception.inputs.boxes.entry import BoxText, Size
 from diorama_core.perception.inputs.boxes.markup import image_of, is_cvat
 from diorama_core.perception.inputs.boxes.nested import objects_of, size_in, size_of
-from diorama_core.perception.inputs.boxes.table import parse_box_text
+from diorama_core.perception.inputs.boxes.reading import parse_box_text
 from diorama_core.perception.inputs.boxes.tools import (
     is_data_set,
     is_via,

@@ -14,9 +14,17 @@ from PIL import Image
 from diorama_core.artefacts import Photo
 from diorama_core.errors import InputError, SphericalPhotoError
 from diorama_core.perception.camera.exif import focal_from_exif
-from diorama_core.perception.inputs.photos.decoding import dark_colours, eight_bits, is_heif, load_pixels, open_picture
+from diorama_core.perception.inputs.photos.decoding import (
+    PhotoFile,
+    dark_colours,
+    eight_bits,
+    is_heif,
+    largest_picture,
+    load_pixels,
+    open_picture,
+    raw_kind,
+)
 from diorama_core.perception.inputs.photos.frame import PhotoFrame, plain_borders
-from diorama_core.perception.inputs.photos.raw import PhotoFile, largest_picture, raw_kind
 from diorama_core.perception.inputs.source import Form, Source, form_of
 
 MIN_SIDE_PX = 32

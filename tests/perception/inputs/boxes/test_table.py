@@ -9,8 +9,7 @@ import pytest
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.boxes.nested import box_of, word_of
-from diorama_core.perception.inputs.boxes.reading import read_boxes
-from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parse_box_text
+from diorama_core.perception.inputs.boxes.reading import BOX_FORMS, parse_box_text, read_boxes
 from diorama_core.perception.inputs.source import Source, form_of
 from tests.perception.inputs.files import decoded
 

@@ -17,9 +17,14 @@ from PIL import Image
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.masks.pictures import paint_masks, without_void
-from diorama_core.perception.inputs.masks.reading import read_masks
+from diorama_core.perception.inputs.masks.reading import (
+    MASK_FORMS,
+    MaskContent,
+    read_arrays,
+    read_folder_of_masks,
+    read_masks,
+)
 from diorama_core.perception.inputs.masks.segments import decode_runs, is_markup, read_segments, whole_numbers
-from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent, read_arrays, read_folder_of_masks
 from diorama_core.perception.inputs.source import Folder, Source, form_of, read_folder
 from tests.perception.inputs.files import decoded, encoded, npy
 

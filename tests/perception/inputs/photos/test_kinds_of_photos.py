@@ -12,9 +12,8 @@ from PIL import Image
 
 from diorama_core.errors import InputError, SphericalPhotoError
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.perception.inputs.photos.decoding import eight_bits
+from diorama_core.perception.inputs.photos.decoding import eight_bits, raw_kind
 from diorama_core.perception.inputs.photos.frame import PhotoFrame, plain_borders
-from diorama_core.perception.inputs.photos.raw import raw_kind
 from diorama_core.perception.inputs.photos.reading import PHOTO_FORMS, check_perspective
 from diorama_core.perception.inputs.source import Source, form_of
 from tests.perception.inputs.files import box, boxes_json, depth_png, encoded, npy
