@@ -83,10 +83,7 @@ def read_scene(path: Path, shapes: Path, known: frozenset[str], progress: Progre
         known: Ids of the shapes that the library has.
         progress: Where it is reported and cancelling is noticed.
 
-    Raises:
-        InputError: the file cannot be read.
-        UnavailableError: an optional library is missing.
-        LibraryError: models cannot be kept.
+    It raises as `import_scene`.
     """
     with _read(path, progress) as (place, content):
         if isinstance(content, MarkedFile):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import zipfile
-from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Int32, Shaped
@@ -25,6 +24,7 @@ from diorama_core.perception.inputs.masks.pictures import (
 )
 from diorama_core.perception.inputs.masks.segments import (
     MAX_TOTAL_MEGAPIXELS,
+    MaskContent,
     is_markup,
     is_polygon_list,
     read_cvat_masks,
@@ -37,28 +37,6 @@ from diorama_core.perception.inputs.source import Folder, Form, Source, form_of
 AROUND_SHARE = 0.6
 """Share of the picture's border that each mask covers, where they are black on white."""
 _PICTURES = (".npy", ".png", ".tif", ".tiff", ".bmp", ".gif", ".webp", ".pgm", ".ppm", ".pbm", ".jpg", ".jpeg")
-
-
-@dataclass(frozen=True)
-class MaskContent:
-    """A file or a folder, and the photo that it is of."""
-
-    given: Folder | Source
-    photo_name: str
-    photo_size: tuple[int, int]
-
-    @property
-    def folder(self) -> Folder:
-        """The folder, of what is one."""
-        assert isinstance(self.given, Folder)
-        return self.given
-
-    @property
-    def source(self) -> Source:
-        """The file, of what is no folder."""
-        assert isinstance(self.given, Source)
-        return self.given
-
 
 MASK_FORMS: tuple[Form[MaskContent, MaskMap], ...] = (
     Form(
@@ -80,21 +58,21 @@ MASK_FORMS: tuple[Form[MaskContent, MaskMap], ...] = (
         "COCO, SAM, LabelMe, Label Studio's brush, VIA, Supervisely, Roboflow",
         "run lengths, plain or packed, bitmaps and polygons, of the photo's file name",
         lambda content: content.source.data.lstrip()[:1] in (b"[", b"{"),
-        lambda content: read_segments(content.source, content.photo_name, content.photo_size),
+        read_segments,
     ),
     Form(
         "CVAT",
         "CVAT for images",
         "polygons and masks of the photo",
-        lambda content: is_markup(content.source),
-        lambda content: read_cvat_masks(content.source, content.photo_name, content.photo_size),
+        is_markup,
+        read_cvat_masks,
     ),
     Form(
         "YOLO polygons",
         "Ultralytics",
         "a class number and the corners of a polygon a line, in shares of the picture",
-        lambda content: is_polygon_list(content.source),
-        lambda content: read_polygon_list(content.source, content.photo_size),
+        is_polygon_list,
+        read_polygon_list,
     ),
     Form(
         "picture (PNG, TIFF, GIF, WebP)",

@@ -6,6 +6,7 @@ import base64
 import math
 import zlib
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 from xml.etree.ElementTree import Element
 
@@ -27,16 +28,38 @@ from diorama_core.perception.inputs.boxes.tools import (
     rows_of_results,
 )
 from diorama_core.perception.inputs.masks.pictures import MAX_MASK_MEGAPIXELS, MaskMap, one_object, paint_masks
-from diorama_core.perception.inputs.source import Source
+from diorama_core.perception.inputs.source import Folder, Source
 
 MAX_TOTAL_MEGAPIXELS = 600
 """Limit of all masks of a folder or a file together."""
 
 
-def read_segments(source: Source, photo_name: str, photo_size: Size) -> MaskMap:
+@dataclass(frozen=True)
+class MaskContent:
+    """A file or a folder, and the photo that it is of."""
+
+    given: Folder | Source
+    photo_name: str
+    photo_size: tuple[int, int]
+
+    @property
+    def folder(self) -> Folder:
+        """The folder, of what is one."""
+        assert isinstance(self.given, Folder)
+        return self.given
+
+    @property
+    def source(self) -> Source:
+        """The file, of what is no folder."""
+        assert isinstance(self.given, Source)
+        return self.given
+
+
+def read_segments(content: MaskContent) -> MaskMap:
     """Run lengths (COCO, SAM), bitmaps (Supervisely) and polygons (COCO, LabelMe, VIA) of JSON."""
+    source, photo_size = content.source, content.photo_size
     document = parse_json(source.data, source.name, InputError, advice="masks are pictures, arrays or COCO's segments")
-    document, size = _photo_annotations(BoxText(source, document, photo_name, photo_size))
+    document, size = _photo_annotations(BoxText(source, document, content.photo_name, photo_size))
     masks: list[Bool[np.ndarray, "h w"]] = []
     for segment in _segments(document):
         mask = _mask(segment, size or photo_size, source.name)
@@ -47,10 +70,10 @@ def read_segments(source: Source, photo_name: str, photo_size: Size) -> MaskMap:
     return paint_masks(masks, source.name, "segments")
 
 
-def is_polygon_list(source: Source) -> bool:
+def is_polygon_list(content: MaskContent) -> bool:
     """Whether it is text of YOLO's form with polygons."""
     try:
-        rows = [line.split() for line in source.data[:4_000_000].decode().splitlines() if line.strip()]
+        rows = [line.split() for line in content.source.data[:4_000_000].decode().splitlines() if line.strip()]
         numbers = [[float(v) for v in row] for row in rows]
     except ValueError:
         return False
@@ -58,8 +81,9 @@ def is_polygon_list(source: Source) -> bool:
     return bool(numbers) and polygons and all(min(r[1:]) >= -0.1 and max(r[1:]) <= 1.1 for r in numbers)
 
 
-def read_polygon_list(source: Source, photo_size: Size) -> MaskMap:
+def read_polygon_list(content: MaskContent) -> MaskMap:
     """Polygons in shares of the picture."""
+    source, photo_size = content.source, content.photo_size
     masks = []
     for line in source.data.decode().splitlines():
         shares = [float(v) for v in line.split()[1:]]
@@ -173,14 +197,15 @@ def fill_polygon(rings: list[Any], size: Size, name: str) -> Bool[np.ndarray, "h
     return np.asarray(canvas) > 0
 
 
-def is_markup(source: Source) -> bool:
+def is_markup(content: MaskContent) -> bool:
     """Whether it is XML."""
-    return source.data.lstrip(b"\xef\xbb\xbf \r\n\t")[:1] == b"<"
+    return content.source.data.lstrip(b"\xef\xbb\xbf \r\n\t")[:1] == b"<"
 
 
-def read_cvat_masks(source: Source, photo_name: str, photo_size: Size) -> MaskMap:
+def read_cvat_masks(content: MaskContent) -> MaskMap:
     """The polygons and masks of the photo in CVAT's XML."""
-    text = parse_box_text(source, photo_name, photo_size)
+    source, photo_size = content.source, content.photo_size
+    text = parse_box_text(source, content.photo_name, photo_size)
     image = image_of(text.document.findall("image"), text) if isinstance(text.document, Element) else None
     if not is_cvat(text) or image is None:
         raise InputError(f"{source.name}: this XML holds no masks; give CVAT's, JSON with polygons, or pictures")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs.boxes.nested import box_of, word_of
 from diorama_core.perception.inputs.boxes.reading import BOX_FORMS, parse_box_text, read_boxes
@@ -188,6 +189,10 @@ def test_no_form_knows_strange_files(strange: str) -> None:
     assert form_of(BOX_FORMS, parse_box_text(Source(strange.encode(), "file"), "photo.png", SIZE)) is None
 
 
+def read(document: object) -> tuple[tuple[LabelledBox, ...], tuple[str, ...]]:
+    return read_boxes(Source(content(document), "file"), decoded(*SIZE))
+
+
 def content(document: object) -> bytes:
     return (document if isinstance(document, str) else json.dumps(document)).encode()
 
@@ -214,13 +219,13 @@ def test_boxes_of_other_pictures_are_refused(document: object) -> None:
 def test_names_of_pictures_as_programs_change_them(name: str) -> None:
     other = {"id": 8, "file_name": "other.png", "width": 10, "height": 10}
     document = {**COCO, "images": [{**COCO["images"][0], "file_name": name}, other]}
-    assert len(read_boxes(Source(content(document), "c.json"), decoded(*SIZE))[0]) == 2
+    assert len(read(document)[0]) == 2
 
 
 def test_a_photo_without_boxes_among_others_is_said() -> None:
     document = [{"name": "a.png", "labels": NAMED}, {"name": "photo.png", "labels": []}]
     with pytest.raises(InputError, match="holds no box of the photo"):
-        read_boxes(Source(content(document), "b"), decoded(*SIZE))
+        read(document)
 
 
 def test_utf_16_is_text() -> None:
@@ -229,10 +234,9 @@ def test_utf_16_is_text() -> None:
 
 @pytest.mark.parametrize(("name", "document"), FORMS, ids=[f"{k}-{n}" for k, (n, _) in enumerate(FORMS)])
 def test_every_form_gives_the_same_boxes(name: str, document: object) -> None:
-    source = Source(content(document), "file")
-    form = form_of(BOX_FORMS, parse_box_text(source, "photo.png", SIZE))
+    form = form_of(BOX_FORMS, parse_box_text(Source(content(document), "file"), "photo.png", SIZE))
     assert form.name == name
-    found, _ = read_boxes(source, decoded(*SIZE))
+    found, _ = read(document)
     assert [b.label for b in found] == ["chair", "sofa"]
     for box, (*expected, _) in zip(found, BOXES, strict=True):
         assert box.box == pytest.approx(expected, abs=1e-6)
@@ -268,11 +272,11 @@ def test_coco_results_are_sized_and_say_where_names_are(tmp_path: Path) -> None:
 def test_a_data_set_of_many_pictures_gives_the_photo_s() -> None:
     other = {"id": 8, "file_name": "other.png", "width": 10, "height": 10}
     many = {**COCO, "images": [*COCO["images"], other]}
-    found, notes = read_boxes(Source(json.dumps(many).encode(), "c.json"), decoded(*SIZE))
+    found, notes = read(many)
     assert len(found) == 2
     assert "2 pictures" in notes[0]
     with pytest.raises(InputError, match="none of them called"):
-        read_boxes(Source(json.dumps({**many, "images": [other, other]}).encode(), "c.json"), decoded(*SIZE))
+        read({**many, "images": [other, other]})
 
 
 def test_names_under_unusual_keys_are_used_or_named() -> None:
@@ -280,11 +284,11 @@ def test_names_under_unusual_keys_are_used_or_named() -> None:
         {"bbox": [1, 1, 60, 60], "thing": "chair", "id": "a17"},
         {"bbox": [9, 9, 80, 80], "thing": "sofa", "id": "b2"},
     ]
-    found, notes = read_boxes(Source(json.dumps(known).encode(), "b.json"), decoded(*SIZE))
+    found, notes = read(known)
     assert [b.label for b in found] == ["chair", "sofa"]
     assert "'thing'" in notes[0]
     unknown = [{"bbox": [1, 1, 60, 60], "note": "qwxz"}]
-    found, notes = read_boxes(Source(json.dumps(unknown).encode(), "b.json"), decoded(*SIZE))
+    found, notes = read(unknown)
     assert found[0].label == "object"
     assert "'note'" in notes[0]
 
@@ -292,7 +296,7 @@ def test_names_under_unusual_keys_are_used_or_named() -> None:
 @pytest.mark.parametrize("document", ["<svg/>", "hello world", {"a": 1}, [1, 2], [{"x": "y"}]])
 def test_what_is_no_file_of_boxes_is_refused_with_an_example(document: object) -> None:
     with pytest.raises(InputError, match="boxes are a JSON list"):
-        read_boxes(Source(content(document), "b"), decoded(*SIZE))
+        read(document)
 
 
 def test_one_annotation_in_anybody_s_words() -> None:
@@ -318,8 +322,7 @@ def test_one_annotation_in_anybody_s_words() -> None:
     ids=["scores behind words", "scores and numbers", "the background is none", "numbers of classes"],
 )  # fmt: skip
 def test_words_of_boxes(document: object, words: list[str]) -> None:
-    source = Source(json.dumps(document).encode(), "a.json")
-    assert [b.label for b in read_boxes(source, decoded(*SIZE))[0]] == words
+    assert [b.label for b in read(document)[0]] == words
 
 
 def test_bounds_of_cvat_s_masks() -> None:
@@ -328,6 +331,6 @@ def test_bounds_of_cvat_s_masks() -> None:
         for x1, y1, x2, y2, w in BOXES
     )
     image = f'<image name="photo.png" width="400" height="300">{masks}</image>'
-    source = Source(f"<annotations>{image}</annotations>".encode(), "a.xml")
-    found = read_boxes(source, decoded(*SIZE))[0]
-    assert [(b.box, b.label) for b in found] == [(tuple(map(float, b[:4])), b[4]) for b in BOXES]
+    assert [(b.box, b.label) for b in read(f"<annotations>{image}</annotations>")[0]] == [
+        (tuple(map(float, b[:4])), b[4]) for b in BOXES
+    ]

@@ -24,7 +24,7 @@ from diorama_core.perception.inputs.masks.reading import (
     read_folder_of_masks,
     read_masks,
 )
-from diorama_core.perception.inputs.masks.segments import decode_runs, is_markup, read_segments, whole_numbers
+from diorama_core.perception.inputs.masks.segments import decode_runs, whole_numbers
 from diorama_core.perception.inputs.source import Folder, Source, form_of, read_folder
 from tests.perception.inputs.files import decoded, encoded, npy
 
@@ -179,16 +179,15 @@ BITMAP = {
     ],
 )  # fmt: skip
 def test_polygons_and_bitmaps_of_annotation_tools(document: object) -> None:
-    source = Source(json.dumps(document).encode(), "m")
-    np.testing.assert_array_equal(read_segments(source, "photo.png", (WIDTH, HEIGHT)).values > 0, LARGE)
+    np.testing.assert_array_equal(found(Source(json.dumps(document).encode(), "m")) > 0, LARGE)
 
 
 def test_segments_of_other_pictures_are_refused() -> None:
     with pytest.raises(InputError, match="is of 2 pictures, none of them called"):
-        read_segments(Source(json.dumps(DATA_SET).encode(), "m"), "c.png", (WIDTH, HEIGHT))
+        found(Source(json.dumps(DATA_SET).replace("photo", "c").encode(), "m"))
     broken = {"objects": [{"bitmap": {**BITMAP, "origin": [100, 10]}}]}
     with pytest.raises(InputError, match="beyond the picture"):
-        read_segments(Source(json.dumps(broken).encode(), "m"), "c.png", (WIDTH, HEIGHT))
+        found(Source(json.dumps(broken).encode(), "m"))
 
 
 def test_polygons_of_yolo() -> None:
@@ -208,8 +207,6 @@ def cvat(figures: str) -> Source:
 
 
 def test_cvat_s_polygons_and_masks() -> None:
-    assert is_markup(cvat(""))
-    assert not is_markup(Source(b"[]", "a.json"))
     polygons = [";".join(f"{x},{y}" for x, y in corners_of(m)) for m in (LARGE, SMALL)]
     np.testing.assert_array_equal(found(cvat("".join(f'<polygon label="a" points="{p}"/>' for p in polygons))), IDS)
     (left, top), _, (right, bottom), _ = corners_of(SMALL)
