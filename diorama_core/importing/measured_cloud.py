@@ -226,8 +226,7 @@ def _lines(points: Float[np.ndarray, "n 3"], top_m: float, axis: int) -> list[fl
 
 def _walls(room: ScannedRoom) -> tuple[MeasuredWall, ...]:
     ring = np.asarray(room.outline.exterior.coords)[:, :2]
-    walls = []
-    for number, (a, b) in enumerate(pairwise(ring)):
-        corners = [[*a, 0.0], [*b, 0.0], [*b, room.top_m], [*a, room.top_m]]
-        walls.append(MeasuredWall(f"wall_{number + 1}", np.array(corners)))
-    return tuple(walls)
+    return tuple(
+        MeasuredWall(f"wall_{number}", np.array([[*a, 0.0], [*b, 0.0], [*b, room.top_m], [*a, room.top_m]]))
+        for number, (a, b) in enumerate(pairwise(ring), 1)
+    )

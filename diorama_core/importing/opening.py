@@ -78,14 +78,12 @@ def open_marked(file: MarkedFile) -> Opened:
         InputError: when the scene document in the file is damaged or of a newer version.
     """
     scene, changes = _restore(file)
-    planes, textures = [], dict(file.material_pictures)
-    for plane in scene.architecture.planes:
-        picture = file.pictures.get(plane.id)
-        if picture is not None:
-            plane = replace(plane, texture=plane.texture or f"plane-{plane.id}")
-            textures[str(plane.texture)] = picture
-        planes.append(plane)
-    scene = replace(scene, architecture=Architecture(tuple(planes)))
+    shown = file.pictures
+    planes = tuple(
+        replace(p, texture=p.texture or f"plane-{p.id}") if p.id in shown else p for p in scene.architecture.planes
+    )
+    textures = {**file.material_pictures, **{str(p.texture): shown[p.id] for p in planes if p.id in shown}}
+    scene = replace(scene, architecture=Architecture(planes))
     photo, remarks = _photo(file, scene)
     return Opened(scene, textures, (*changes, *remarks), file.provenance, photo)
 

@@ -135,11 +135,8 @@ def split_scene(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tup
         node = waiting.pop()
         nodes = _own(children, node, boxes)
         loose = [str(c) for c in children.get(node, ()) if c not in nodes]
-        if nodes:
-            top = max(boxes[n][1, 2] for n in nodes)
-            stands = [c for c in loose if _bottom(children, c, boxes) > top - TOUCH_M]
-        else:
-            stands = []
+        top = max((boxes[n][1, 2] for n in nodes), default=np.inf)
+        stands = [c for c in loose if _bottom(children, c, boxes) > top - TOUCH_M] if nodes else []
         below = [n for n in _subtree(children, node, set(stands)) if n in boxes]
         if not below:
             waiting += reversed(loose)
@@ -206,9 +203,8 @@ def _part(scene: trimesh.Scene, name: str, nodes: Sequence[str], root: str, to_w
 
 def _fingerprint(points: Float[np.ndarray, "n 3"], faces: np.ndarray) -> str:
     """Equal for equal geometry in its node's frame."""
-    return hashlib.sha256((np.round(points, 4) + 0.0).tobytes() + np.asarray(faces, np.int64).tobytes()).hexdigest()[
-        :16
-    ]
+    digest = hashlib.sha256((np.round(points, 4) + 0.0).tobytes() + np.asarray(faces, np.int64).tobytes())
+    return digest.hexdigest()[:16]
 
 
 def _yaw(M_root: Float[np.ndarray, "4 4"], to_world: Float[np.ndarray, "4 4"]) -> float:

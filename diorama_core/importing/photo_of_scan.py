@@ -151,10 +151,9 @@ def _label(item: DetectedObject, scanned: SceneObject | None) -> LabelledBox:
 
 def _filling(item: SceneObject, measured: SceneObject) -> SceneObject:
     """The object, and every candidate, filling its measured box, its front where the scan says."""
-    size, R, centre = measured.size_m, measured.pose.R_world_object, measured.pose.position
 
     def filling(shape_size_m: tuple[float, float, float]) -> Pose:
-        return Pose(R, centre, size / np.array(shape_size_m))
+        return replace(measured.pose, scale=measured.size_m / np.array(shape_size_m))
 
     candidates = tuple(replace(c, pose=filling(c.shape_size_m)) for c in item.candidates)
     return replace(item, pose=filling(item.shape_size_m), candidates=candidates)

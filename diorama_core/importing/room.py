@@ -82,9 +82,7 @@ def _roles(parts: Sequence[Part]) -> list[tuple[Part, PlaneRole | None]]:
     named = [_role(p) for p in parts]
     if not parts:
         return []
-    everything = np.array(
-        [np.min([p.whole.bounds[0] for p in parts], axis=0), np.max([p.whole.bounds[1] for p in parts], axis=0)]
-    )
+    everything = _bounds(parts)
     shaped = [slab_role(p, everything) if role is None else role for p, role in zip(parts, named, strict=True)]
     free = {role for role in _ROLES if role not in named}
     return [(p, n if n is not None else s if s in free else None) for p, n, s in zip(parts, named, shaped, strict=True)]
@@ -156,14 +154,17 @@ def _same(plane: Plane, other: Plane) -> bool:
     """Whether two planes are faces of one slab, which files keep apart by material."""
     if plane.role != other.role or plane.normal @ other.normal < 0.99:
         return False
-    apart = [np.abs(plane.polygon.min(axis=0) - other.polygon.min(axis=0)).max()]
-    apart.append(np.abs(plane.polygon.max(axis=0) - other.polygon.max(axis=0)).max())
+    apart = [np.abs(end(plane.polygon, axis=0) - end(other.polygon, axis=0)).max() for end in (np.min, np.max)]
     return bool(max(apart) < THIN_M / 2)
 
 
+def _bounds(parts: Sequence[Part]) -> Float[np.ndarray, "2 3"]:
+    ends = np.array([p.whole.bounds for p in parts])
+    return np.stack([ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)])
+
+
 def _ground(parts: Sequence[Part]) -> Plane:
-    low = np.min([p.whole.bounds[0] for p in parts], axis=0)
-    high = np.max([p.whole.bounds[1] for p in parts], axis=0)
+    low, high = _bounds(parts)
     (x0, y0), (x1, y1), z = low[:2] - ROUND_M, high[:2] + ROUND_M, low[2]
     return Plane("floor", "floor", np.array([[x0, y0, z], [x1, y0, z], [x1, y1, z], [x0, y1, z]]))
 
