@@ -189,11 +189,11 @@ def _object(names: Names, box: MeasuredBox, object_id: str, library: ShapeLibrar
         for m in pool_for(library, query).members
     ]
     ranked = sorted(scored, key=lambda row: (-row[0], row[1].id))
-    item = _shown(names, ranked[0][1].category, ranked, lambda shape: _filling(shape, box))
+    item = _with_candidates(names, ranked[0][1].category, ranked, lambda shape: _filling(shape, box))
     return replace(item, label=box.label, confidence=box.confidence)
 
 
-def _shown(
+def _with_candidates(
     names: Names, category: str, ranked: Sequence[tuple[float, Shape]], pose: Callable[[Shape], Pose]
 ) -> SceneObject:
     """An object that the first of the shapes shows; the next ones may take its place."""
@@ -273,4 +273,4 @@ def _hang(names: Names, opening: MeasuredOpening, wall: Plane, library: ShapeLib
         for s in sorted(shapes, key=lambda s: (size_cost(s.size_m[1:], size[1:]), s.id))
     ]
     centre = on_wall + wall.normal * STANDS_OUT_M / 2
-    return _shown(names, opening.kind, ranked, lambda s: Pose.upright(centre, yaw, size / np.array(s.size_m)))
+    return _with_candidates(names, opening.kind, ranked, lambda s: Pose.upright(centre, yaw, size / np.array(s.size_m)))

@@ -242,7 +242,7 @@ def _from_las(path: Path) -> PointCloud:
         step = max(1, -(-reader.header.point_count // MAX_POINTS))
         for chunk in reader.chunk_iterator(2_000_000):
             rows.append(np.column_stack([chunk.x, chunk.y, chunk.z])[::step])
-    return to_metres(_surveyed(rows))
+    return to_metres(_recentre(rows))
 
 
 def _from_e57(path: Path) -> PointCloud:
@@ -258,10 +258,10 @@ def _from_e57(path: Path) -> PointCloud:
             rows.append(np.column_stack([scan[f"cartesian{axis}"] for axis in "XYZ"]))
     finally:
         opened.close()
-    return _surveyed(rows)
+    return _recentre(rows)
 
 
-def _surveyed(rows: Sequence[np.ndarray]) -> PointCloud:
+def _recentre(rows: Sequence[np.ndarray]) -> PointCloud:
     """Points, +Z up, around the middle of their plan: grids of surveyors begin far away."""
     points = np.vstack(rows).astype(np.float64)
     return PointCloud(points - np.append(np.median(points[:, :2], axis=0), 0.0), UP_Z)

@@ -131,14 +131,14 @@ def read_depth(
     if over is not None:
         numbers = apply_turn(numbers, over)
         laid = (*laid, f"the depth lies {over} over the photo, by the edges of both; it was turned")
-    depth, understood = _convert_to_metres(source.name, numbers, raw, options, _known(photo, boxes, intrinsics))
+    depth, understood = _convert_to_metres(source.name, numbers, raw, options, _surroundings(photo, boxes, intrinsics))
     coverage = _check_plausible(source.name, depth, values, raw, options)
     resized, coarse = _resize_to_photo(depth, size)
     resized.setflags(write=False)
     return resized, (*raw.notes, *unsure, *upended, *laid, *voids, *understood, *coverage, *coarse)
 
 
-def _known(photo: DecodedPhoto, boxes: tuple[LabelledBox, ...], intrinsics: Intrinsics | None) -> Known:
+def _surroundings(photo: DecodedPhoto, boxes: tuple[LabelledBox, ...], intrinsics: Intrinsics | None) -> Known:
     """The boxes and the focal length, the given one or that of the header, in shares of the photo's longer side."""
     side = max(photo.photo.width, photo.photo.height)
     focal = photo.photo.exif_focal_px if intrinsics is None else intrinsics.fx

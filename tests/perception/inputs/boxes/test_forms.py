@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
+from diorama_core.perception.inputs.boxes import lines, lists, markup, tools
+from diorama_core.perception.inputs.boxes.entry import BoxText
 from diorama_core.perception.inputs.boxes.nested import box_of, word_of
 from diorama_core.perception.inputs.boxes.reading import BOX_FORMS, parse_box_text, read_boxes
 from diorama_core.perception.inputs.source import Source, form_of
@@ -182,6 +185,17 @@ FORMS = [
     ("table of boxes", TABLE),
     ("words and numbers", KITTI),
 ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("recognises", "name"),
+    [(tools.is_labelme, "LabelMe"), (lists.is_columns, "columns of boxes"), (markup.is_voc, "Pascal VOC"),
+     (lines.is_words, "words and numbers")],
+)  # fmt: skip
+def test_a_form_knows_its_own_files(recognises: Callable[[BoxText], bool], name: str) -> None:
+    own = [parse_box_text(Source(content(d), "file"), "photo.png", SIZE) for n, d in FORMS if n == name]
+    assert own
+    assert all(recognises(text) for text in own)
 
 
 @pytest.mark.parametrize("strange", ["{}", "<a/>", "one line of text", "[[1]]", '[{"a": 1}]', '{"shapes": 1}'])
