@@ -28,10 +28,10 @@ def tables() -> dict[str, str]:
     from diorama_core.importing.forms import SCENE_FORMS
     from diorama_core.io.file_heads import OTHER_FILES
     from diorama_core.library.ingest.models import MODEL_FORMS
-    from diorama_core.perception.inputs.boxes.table import BOX_FORMS
+    from diorama_core.perception.inputs.boxes.reading import BOX_FORMS
     from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
     from diorama_core.perception.inputs.depth.scale import USUAL_UNITS
-    from diorama_core.perception.inputs.masks.table import MASK_FORMS
+    from diorama_core.perception.inputs.masks.reading import MASK_FORMS
     from diorama_core.perception.inputs.photos.reading import PHOTO_FORMS
 
     models = [f"| {f.name} | {', '.join(f.suffixes)} | {f.note} |" for f in MODEL_FORMS]

@@ -69,12 +69,12 @@ def _import(a: argparse.Namespace) -> None:
 def _import_into(project: Project, a: argparse.Namespace) -> tuple[Opened, tuple[str, ...]]:
     """The file's scene in a new project, read back, and warnings."""
     import diorama_core as diorama
-    from diorama_core.importing.apart import import_apart
+    from diorama_core.importing.scene_import import import_scene, read_apart
 
     warnings: tuple[str, ...] = ()
     with progress_bar() as progress:
         part = progress if a.photo is None else progress.part(0.0, 0.2)
-        imported = import_apart(a.file, project.shapes_folder, a.library, part, a.unit)
+        imported = read_apart(import_scene, a.file, project.shapes_folder, a.library, a.unit, progress=part)
         opened = imported.opened
         project.update_info(library=imported.library_name)
         library = diorama.open_library(project.library_name)

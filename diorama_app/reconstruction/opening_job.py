@@ -12,9 +12,9 @@ from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.strings import _, plural
 from diorama_core.errors import InputError
-from diorama_core.importing.apart import read_apart
 from diorama_core.importing.forms import SUFFIXES
 from diorama_core.importing.opening import Opened
+from diorama_core.importing.scene_import import read_apart, read_scene
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.library_names import BUILT_IN
 from diorama_core.library.user_library import ProjectShapes
@@ -81,7 +81,7 @@ def _read(session: EditorSession, path: Path, shapes: Path, content: bytes, prog
     library = session.library
     shared = library.shared if isinstance(library, ProjectShapes) else library
     write_atomically(path, content, error=InputError)
-    return read_apart(path, shapes, frozenset(shape.id for shape in shared.shapes()), progress)
+    return read_apart(read_scene, path, shapes, frozenset(shape.id for shape in shared.shapes()), progress=progress)
 
 
 def _save(session: EditorSession, file_name: str, opened: Opened, shapes: Path) -> Project:

@@ -9,10 +9,10 @@ from typing import IO
 
 import numpy as np
 from jaxtyping import Float
-from numpy.lib import format as npy
 
 from diorama_core.errors import InputError
 from diorama_core.io.file_heads import FileHead
+from diorama_core.perception.inputs.arrays import array_header
 
 MIN_POINTS = 2000
 """Rows from which an array is a list of points, not a small table."""
@@ -40,16 +40,12 @@ def is_array_cloud(head: FileHead) -> bool:
 
 
 def read_array_cloud(path: Path) -> Float[np.ndarray, "n 3"]:
-    """The points of the first array that is a list of them: its fields x, y and z, or its first three columns.
-
-    Raises:
-        InputError: there is none.
-    """
+    """The points of the first array that is a list of them: its fields x, y and z, or its first three columns."""
     name = _cloud_in(path)
     for array_name, stream, size in _arrays(path):
         if array_name != name:
             continue
-        _check(stream, min(size, MAX_ARRAY_BYTES))
+        array_header(stream, min(size, MAX_ARRAY_BYTES))
         rows = np.load(stream, allow_pickle=False)
         if rows.dtype.names is not None:
             return np.column_stack([rows[axis].astype(np.float64).ravel() for axis in "xyz"])
@@ -65,11 +61,7 @@ def is_float_dump(head: FileHead) -> bool:
 
 
 def read_float_dump(path: Path) -> Float[np.ndarray, "n 3"]:
-    """The places of a dump's points.
-
-    Raises:
-        InputError: its floats are no points.
-    """
+    """The places of a dump's points."""
     with path.open("rb") as stream:
         width = _width(stream.read(1 << 16), path.stat().st_size)
     if width is None:
@@ -101,7 +93,7 @@ def _difference(values: Float[np.ndarray, "n"], width: int) -> float:
 def _cloud_in(path: Path) -> str | None:
     """The name of the array that is a list of points; empty for the only one of a file."""
     for name, stream, size in _arrays(path):
-        shape, dtype = _check(stream, min(size, MAX_ARRAY_BYTES))
+        shape, dtype = array_header(stream, min(size, MAX_ARRAY_BYTES))
         if dtype.names is not None:
             if {"x", "y", "z"} <= set(dtype.names) and np.prod(shape) >= MIN_POINTS:
                 return name
@@ -123,17 +115,3 @@ def _arrays(path: Path) -> Iterator[tuple[str, IO[bytes], int]]:
         for member in archive.infolist():
             with archive.open(member) as stream:
                 yield member.filename, stream, member.file_size
-
-
-def _check(stream: IO[bytes], most: int) -> tuple[tuple[int, ...], np.dtype]:
-    """Shape and type of an array whose header promises no more than so many bytes; the stream is where it was.
-
-    Raises:
-        ValueError: the header is damaged, or promises more.
-    """
-    version = npy.read_magic(stream)
-    shape, _, dtype = npy.read_array_header_1_0(stream) if version == (1, 0) else npy.read_array_header_2_0(stream)
-    stream.seek(0)
-    if dtype.hasobject or any(n < 0 for n in shape) or float(np.prod(shape, dtype=float)) * dtype.itemsize > most:
-        raise ValueError("its header promises too much")
-    return shape, dtype

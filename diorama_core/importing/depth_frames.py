@@ -1,12 +1,13 @@
-"""Depth pictures with known cameras, as scanner apps and benchmarks keep them in folders.
+"""Depth pictures with known cameras, as scanner apps, benchmarks and data sets keep them in folders.
 
-Polycam's raw data, 3D Scanner App's "all data", Stray Scanner, TUM RGB-D and ScanNet's exported frames. Each form is a
-small function from a folder to frames; `FRAME_FORMS` is their table.
+Each form is a small function from a folder to frames; `FRAME_FORMS` is their table.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+import re
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from diorama_core.importing.point_cloud import MAX_POINTS, PointCloud, ScanPhoto
 from diorama_core.io.bounded import read_bytes
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.file_heads import FileHead
-from diorama_core.multiview.posed_photos import read_poses
+from diorama_core.multiview.posed_photos import OPENCV_FROM_OPENGL, read_poses
 from diorama_core.perception.inputs.depth.voids import is_sure
 from diorama_core.scene.types import Camera, Intrinsics
 
@@ -72,9 +73,8 @@ def polycam_frames(folder: Path) -> Frames:
     keyframes = folder / "keyframes" if (folder / "keyframes").is_dir() else folder
     files, frames = ContainedFiles(folder, InputError), {}
     for path in filter(files.holds, sorted((keyframes / "depth").glob("*.png"))):
-        sure = keyframes / "confidence" / path.name
-        pictures = [keyframes / name / f"{path.stem}.jpg" for name in ("corrected_images", "images")]
-        frames[path.stem] = (path, sure, next(filter(files.holds, pictures), None))
+        pictures = (keyframes / name / f"{path.stem}.jpg" for name in ("corrected_images", "images"))
+        frames[path.stem] = (path, keyframes / "confidence" / path.name, first_of(files, *pictures))
     return _with_poses(keyframes, frames)
 
 
@@ -83,8 +83,8 @@ def scanner_app_frames(folder: Path) -> Frames:
     files, frames = ContainedFiles(folder, InputError), {}
     for path in filter(files.holds, sorted(folder.glob("depth_*.png"))):
         number = path.stem.removeprefix("depth_")
-        picture = folder / f"frame_{number}.jpg"
-        frames[f"frame_{number}"] = (path, folder / f"conf_{number}.png", picture if files.holds(picture) else None)
+        picture = first_of(files, folder / f"frame_{number}.jpg")
+        frames[f"frame_{number}"] = (path, folder / f"conf_{number}.png", picture)
     return _with_poses(folder, frames)
 
 
@@ -95,10 +95,9 @@ def stray_frames(folder: Path) -> Frames:
     files, frames = ContainedFiles(folder, InputError), []
     for row in numbers_of(folder / "odometry.csv", heading=True)[:, :9]:
         name = f"{int(row[1]):06d}.png"
-        depth, sure = folder / "depth" / name, folder / "confidence" / name
-        if files.holds(depth):
-            camera = Camera(k, _pose(row[2:5], row[5:9]))
-            frames.append(DepthFrame(depth, camera, sure if files.holds(sure) else None))
+        if files.holds(folder / "depth" / name):
+            sure = first_of(files, folder / "confidence" / name)
+            frames.append(DepthFrame(folder / "depth" / name, Camera(k, _pose(row[2:5], row[5:9])), sure))
     return Frames(tuple(frames), UP_Y)
 
 
@@ -113,11 +112,9 @@ def tum_frames(folder: Path) -> Frames:
         depth = folder / name
         if abs(poses[nearest, 0] - float(time)) > TUM_APART_S or not files.holds(depth):
             continue
-        with Image.open(depth, formats=("PNG", "PPM")) as opened:
-            k = KINECT.resize(*opened.size)
         shown = min(pictures, key=lambda p: abs(float(p[0]) - float(time)), default=None)
-        picture = folder / shown[1] if shown is not None and files.holds(folder / shown[1]) else None
-        camera = Camera(k, _pose(poses[nearest, 1:4], poses[nearest, 4:8]))
+        picture = None if shown is None else first_of(files, folder / shown[1])
+        camera = Camera(KINECT.resize(*size_of(depth)), _pose(poses[nearest, 1:4], poses[nearest, 4:8]))
         frames.append(DepthFrame(depth, camera, None, picture, TUM_UNIT_M))
     return Frames(tuple(frames), UP_Z, ("depth of TUM RGB-D, in 1/5000 m",))
 
@@ -128,38 +125,10 @@ def scannet_frames(folder: Path) -> Frames:
     files, frames = ContainedFiles(folder, InputError), []
     for depth in sorted(filter(files.holds, (folder / "depth").glob("*.png")), key=lambda p: (len(p.stem), p.stem)):
         pose, picture = folder / "pose" / f"{depth.stem}.txt", folder / "color" / f"{depth.stem}.jpg"
-        if not files.holds(pose):
-            continue
-        T = numbers_of(pose).reshape(4, 4)
-        if np.isfinite(T).all():
-            with Image.open(depth, formats=("PNG", "PPM")) as opened:
-                k = Intrinsics(*opened.size, K[0, 0], K[1, 1], K[0, 2], K[1, 2])
-            frames.append(DepthFrame(depth, Camera(k, T), None, picture if files.holds(picture) else None))
+        if files.holds(pose) and np.isfinite(T := numbers_of(pose).reshape(4, 4)).all():
+            k = Intrinsics(*size_of(depth), K[0, 0], K[1, 1], K[0, 2], K[1, 2])
+            frames.append(DepthFrame(depth, Camera(k, T), None, first_of(files, picture)))
     return Frames(tuple(frames), UP_Z)
-
-
-FRAME_FORMS = (
-    FrameForm(
-        "Polycam raw data",
-        lambda h: h.is_folder and h.has(".png") and _has_folder(h, "depth/") and _has_folder(h, "cameras/"),
-        polycam_frames,
-    ),
-    FrameForm(
-        "3D Scanner App, all data", lambda h: h.is_folder and any(n.startswith("depth_") for n in h.names),
-        scanner_app_frames,
-    ),
-    FrameForm(
-        "Stray Scanner", lambda h: h.is_folder and {"odometry.csv", "camera_matrix.csv"} <= set(h.names), stray_frames
-    ),
-    FrameForm(
-        "TUM RGB-D", lambda h: h.is_folder and {"depth.txt", "groundtruth.txt"} <= set(h.names), tum_frames
-    ),
-    FrameForm(
-        "ScanNet frames",
-        lambda h: h.is_folder and "intrinsic/intrinsic_depth.txt" in h.names and _has_folder(h, "pose/"),
-        scannet_frames,
-    ),
-)  # fmt: skip
 
 
 def _has_folder(head: FileHead, folder: str) -> bool:
@@ -184,16 +153,30 @@ def cloud_of_frames(folder: Path, form: FrameForm) -> PointCloud:
 
 def read_depth(path: Path, unit_m: float = MILLIMETRE) -> Float[np.ndarray, "h w"]:
     """Depth along the viewing axis in metres, from a PNG or PGM; 0 where the sensor saw nothing."""
+    return _picture(path).astype(np.float64) * unit_m
+
+
+def _picture(path: Path) -> np.ndarray:
     with Image.open(path, formats=("PNG", "PPM")) as opened:
-        return np.asarray(opened).astype(np.float64) * unit_m
+        return np.asarray(opened)
+
+
+def size_of(depth: Path) -> tuple[int, int]:
+    """Width and height of a depth picture."""
+    with Image.open(depth, formats=("PNG", "PPM")) as opened:
+        return opened.size
+
+
+def first_of(files: ContainedFiles, *paths: Path) -> Path | None:
+    """The first of the paths that is a file of the folder."""
+    return next(filter(files.holds, paths), None)
 
 
 def _points(frame: DepthFrame, step: int) -> Float[np.ndarray, "n 3"]:
     depth = read_depth(frame.depth, frame.unit_m)
     good = (depth > 0.05) & (depth < MAX_DEPTH_M)
     if frame.confidence is not None:
-        with Image.open(frame.confidence, formats=("PNG", "PPM")) as opened:
-            sure = np.asarray(opened)
+        sure = _picture(frame.confidence)
         if sure.shape != depth.shape:
             raise InputError(f"{frame.confidence.name} has another size than its depth; export the scan again")
         good &= is_sure(sure)
@@ -209,7 +192,7 @@ def _points(frame: DepthFrame, step: int) -> Float[np.ndarray, "n 3"]:
 def _with_poses(folder: Path, frame_files: dict[str, tuple[Path, Path, Path | None]]) -> Frames:
     poses, files = read_poses(folder), ContainedFiles(folder, InputError)
     frames = [
-        DepthFrame(depth, p.camera, sure if files.holds(sure) else None, picture)
+        DepthFrame(depth, p.camera, first_of(files, sure), picture)
         for p in poses.photos
         if Path(p.name).stem in frame_files
         for depth, sure, picture in (frame_files[Path(p.name).stem],)
@@ -238,3 +221,112 @@ def numbers_of(path: Path, *, heading: bool = False) -> Float[np.ndarray, "n m"]
     if not lines[heading:]:
         raise InputError(f"{path} holds no numbers; export the scan again")
     return np.array([[float(v) for v in line.split()] for line in lines[heading:]])
+
+
+SEVEN_SCENES = Intrinsics(640, 480, 585.0, 585.0, 320.0, 240.0)
+"""What 7-Scenes' page gives for its depth."""
+REPLICA = Intrinsics(1200, 680, 600.0, 600.0, 599.5, 339.5)
+"""Intrinsics of NICE-SLAM's renderings of Replica, used where `cam_params.json` is absent."""
+REPLICA_STEPS, MATTERPORT_STEPS = 6553.5, 4000.0
+"""Steps of depth a metre."""
+
+
+def seven_scenes_frames(folder: Path) -> Frames:
+    """`frame-000000.depth.png` (or .pgm) in millimetres with `frame-000000.pose.txt`, also in folders `seq-01`."""
+    files, frames = ContainedFiles(folder, InputError), []
+    info = text_of(folder / "_info.txt") or text_of(folder / "info.txt")
+    stated = re.search(r"m_calibrationDepthIntrinsic\s*=([^\n]*)", info)
+    known = None if stated is None else np.array(stated[1].split(), float)
+    for depth in _find(folder, files, "*.depth.png", "*.depth.pgm"):
+        stem = depth.name.split(".")[0]
+        pose = depth.with_name(f"{stem}.pose.txt")
+        T = numbers_of(pose) if files.holds(pose) else np.full((4, 4), np.nan)
+        if T.shape != (4, 4) or not np.isfinite(T).all():
+            continue
+        size = size_of(depth)
+        k = SEVEN_SCENES.resize(*size)
+        if known is not None and len(known) >= 7:
+            k = Intrinsics(*size, known[0], known[5], known[2], known[6])
+        pictures = (depth.with_name(f"{stem}.color.{ending}") for ending in ("png", "jpg"))
+        frames.append(DepthFrame(depth, Camera(k, T), None, first_of(files, *pictures)))
+    return Frames(tuple(frames), None, () if known is not None else ("the camera is 7-Scenes' own (585 pixels)",))
+
+
+def replica_frames(folder: Path) -> Frames:
+    """`results/depth000000.png` with a row of 16 numbers each in `traj.txt`; the scale in `cam_params.json`."""
+    files = ContainedFiles(folder, InputError)
+    rows = numbers_of(folder / "traj.txt")
+    if rows.shape[1:] != (16,):
+        raise InputError(f"{folder / 'traj.txt'} has not 16 numbers a row; take the one beside the pictures")
+    k, steps = REPLICA, REPLICA_STEPS
+    text = text_of(folder / "cam_params.json")
+    if text:
+        given = json.loads(text)["camera"]
+        k = Intrinsics(given["w"], given["h"], *(float(given[key]) for key in ("fx", "fy", "cx", "cy")))
+        steps = float(given["scale"])
+    frames = []
+    for depth, row in zip(_find(folder, files, "results/depth*.png"), rows, strict=False):
+        picture = first_of(files, *depth.parent.glob(depth.stem.replace("depth", "frame") + ".*"))
+        camera = Camera(k.resize(*size_of(depth)), row.reshape(4, 4))
+        frames.append(DepthFrame(depth, camera, None, picture, 1 / steps))
+    notes = () if text else ("the camera is that of NICE-SLAM's Replica (600 of 1200 pixels)",)
+    return Frames(tuple(frames), None, notes)
+
+
+def matterport_frames(folder: Path) -> Frames:
+    """`undistorted_depth_images` in 1/4000 m, with cameras that look along -z in `undistorted_camera_parameters`."""
+    files, frames = ContainedFiles(folder, InputError), []
+    depths = {p.name: p for p in _find(folder, files, "undistorted_depth_images/**/*.png")}
+    pictures = {p.name: p for p in _find(folder, files, "undistorted_color_images/**/*.jpg")}
+    k = np.eye(3)
+    for conf in _find(folder, files, "undistorted_camera_parameters/**/*.conf"):
+        for words in (line.split() for line in text_of(conf).splitlines()):
+            if words[:1] == ["intrinsics_matrix"]:
+                k = np.array(words[1:10], float).reshape(3, 3)
+            if words[:1] != ["scan"] or len(words) < 19 or words[1] not in depths:
+                continue
+            depth = depths[words[1]]
+            T = np.array(words[3:19], float).reshape(4, 4) @ OPENCV_FROM_OPENGL
+            camera = Camera(Intrinsics(*size_of(depth), k[0, 0], k[1, 1], k[0, 2], k[1, 2]), T)
+            frames.append(DepthFrame(depth, camera, None, pictures.get(words[2]), 1 / MATTERPORT_STEPS))
+    return Frames(tuple(frames), UP_Z, ("depth of Matterport3D, in 1/4000 m",))
+
+
+def _find(folder: Path, files: ContainedFiles, *patterns: str) -> Iterator[Path]:
+    return filter(files.holds, sorted(path for pattern in patterns for path in folder.rglob(pattern)))
+
+
+def _has(head: FileHead, *words: str) -> bool:
+    return head.is_folder and all(any(word in f"/{name}" for name in head.names) for word in words)
+
+
+FRAME_FORMS = (
+    FrameForm(
+        "Polycam raw data",
+        lambda h: h.is_folder and h.has(".png") and _has_folder(h, "depth/") and _has_folder(h, "cameras/"),
+        polycam_frames,
+    ),
+    FrameForm(
+        "3D Scanner App, all data", lambda h: h.is_folder and any(n.startswith("depth_") for n in h.names),
+        scanner_app_frames,
+    ),
+    FrameForm(
+        "Stray Scanner", lambda h: h.is_folder and {"odometry.csv", "camera_matrix.csv"} <= set(h.names), stray_frames
+    ),
+    FrameForm(
+        "TUM RGB-D", lambda h: h.is_folder and {"depth.txt", "groundtruth.txt"} <= set(h.names), tum_frames
+    ),
+    FrameForm(
+        "ScanNet frames",
+        lambda h: h.is_folder and "intrinsic/intrinsic_depth.txt" in h.names and _has_folder(h, "pose/"),
+        scannet_frames,
+    ),
+    FrameForm("7-Scenes, ScanNet frames", lambda h: _has(h, ".depth.p", ".pose.txt"), seven_scenes_frames),
+    FrameForm("Replica frames", lambda h: _has(h, "/traj.txt", "/results/depth"), replica_frames),
+    FrameForm(
+        "Matterport3D frames",
+        lambda h: _has(h, "/undistorted_depth_images/", "/undistorted_camera_parameters/"),
+        matterport_frames,
+    ),
+)  # fmt: skip
+"""The first that tells a folder is its form."""

@@ -16,9 +16,8 @@ import numpy as np
 
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.marked import MarkedFile
-from diorama_core.importing.opening import Opened
-from diorama_core.importing.part import Part
-from diorama_core.importing.parts import shape_parts
+from diorama_core.importing.opening import Names, Opened
+from diorama_core.importing.parts import Part, shape_parts
 from diorama_core.importing.room import room_of, supports_of
 from diorama_core.importing.storeys import rooms_of_floors
 from diorama_core.library.ingest.frames import UNKNOWN
@@ -168,16 +167,9 @@ def _label(name: str) -> str:
 
 
 def _objects(shaped: Sequence[_Shaped]) -> tuple[SceneObject, ...]:
-    taken: set[str] = set()
-    made = []
+    names, made = Names(), []
     for one in shaped:
-        stem = re.sub(r"[^a-z0-9]+", "-", one.record.category.lower()).strip("-") or "object"
-        number = 1
-        while f"{stem}-{number}" in taken:
-            number += 1
-        taken.add(f"{stem}-{number}")
         label = _label(one.part.name) or one.record.category
-        made.append(
-            SceneObject(f"{stem}-{number}", label, one.record.category, one.record.id, one.record.size_m, one.pose)
-        )
+        shape = one.record
+        made.append(SceneObject(names.new(shape.category), label, shape.category, shape.id, shape.size_m, one.pose))
     return tuple(made)

@@ -19,12 +19,10 @@ from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.gltf import read_marked_gltf
 from diorama_core.importing.marked import MarkedFile
 from diorama_core.importing.measured_types import MeasuredRoom
-from diorama_core.importing.part import Part
-from diorama_core.importing.parts import parts_of_gltf, parts_of_usd, split_scene
-from diorama_core.importing.point_cloud import PointCloud, points_of_mesh
-from diorama_core.importing.point_files import POINT_FORMS, PointForm, read_points
+from diorama_core.importing.parts import Part, parts_of_gltf, parts_of_usd, split_scene
+from diorama_core.importing.point_cloud import PointCloud, frame_of_scene, points_of_mesh
+from diorama_core.importing.point_files import POINT_FORMS, read_points
 from diorama_core.importing.roomplan import read_room_plan
-from diorama_core.importing.scene_frame import frame_of_scene
 from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.importing.usd import read_marked_usd
 from diorama_core.io.contained import content_of, unpack
@@ -62,8 +60,6 @@ class SceneParts:
 
 
 _SCENES = "GLB, USD, Sweet Home 3D, OBJ"
-
-
 Content = MarkedFile | MeasuredRoom | PointCloud | SceneParts
 
 
@@ -175,11 +171,6 @@ def _cloud(path: Path, progress: Progress, unit_m: float | None) -> Content:
     return cloud if unit_m is None else cloud.to_unit(unit_m)
 
 
-def _points(form: PointForm) -> SceneForm:
-    return SceneForm(form.name, form.files, "walls from the points, boxes of what stands in them", form.tells,
-                     _cloud, form.extra)  # fmt: skip
-
-
 def _is_room_plan(head: FileHead) -> bool:
     if head.is_folder:
         captures = [head.path / name for name in head.names if name.lower().endswith(".json")]
@@ -203,14 +194,9 @@ def _is_model(*names: str) -> Callable[[FileHead], bool]:
 
 
 MAX_LOOKED_AT = 64_000_000
-
-
 MAX_ROOMS = 200
 """Files of a folder that are looked at."""
-
-
 OBJECTS = "Diorama's own comes back as it was; else floor, walls and objects, or a scan"
-
 
 SCENE_FORMS = (
     SceneForm("glTF", ".glb, .gltf", OBJECTS, _is_model("glTF"), _gltf),
@@ -220,7 +206,8 @@ SCENE_FORMS = (
     SceneForm("RoomPlan", ".json, a folder of captured rooms",
               "walls, doors and windows as measured, furniture in the boxes, a home's rooms by name", _is_room_plan,
               _room_plan),
-    *(_points(form) for form in POINT_FORMS),
+    *(SceneForm(form.name, form.files, "walls from the points, boxes of what stands in them", form.tells, _cloud,
+                form.extra) for form in POINT_FORMS),
     SceneForm("OBJ, FBX, Collada, 3DS", ".obj, .fbx, .dae, .3ds", "floor, walls and objects, or a scan",
               _is_model("OBJ", "FBX", "Collada", "3DS", "OFF", "STL"), _model),
 )  # fmt: skip
@@ -235,11 +222,7 @@ SUFFIXES = (
 
 
 def scan_in(parts: Sequence[Part]) -> PointCloud | None:
-    """The points of a scan, where the parts of a file are one; None where they are modelled.
-
-    Args:
-        parts: in the world, +Z up, metres.
-    """
+    """The points of a scan, where the parts of a file, in the world, are one; None where they are modelled."""
     meshes = [p.whole for p in parts]
     if not meshes:
         return None

@@ -139,10 +139,7 @@ def _object_nodes(nodes: tuple[_Node, ...], document: Json) -> tuple[ObjectNode,
 def _to_stored(document: Json, row: Json, bounds: Any) -> Float[np.ndarray, "4 4"]:
     """The shape's frame to that of a node's mesh: programs that store positions as integers stretch the node instead.
 
-    Args:
-        document: The file's JSON.
-        row: The node that shows the mesh.
-        bounds: Least and largest corner of the mesh in the shape's frame, as it was written.
+    Bounds are the least and largest corner of the mesh in the shape's frame, as it was written.
     """
     out = np.eye(4)
     primitives = document["meshes"][row["mesh"]]["primitives"] if "mesh" in row else []
@@ -163,57 +160,59 @@ FROM_PHOTO = re.compile(r" from the photo (\S+)(?: \d+)?$")
 """The end of such a material's name, where a number may tell equal ones apart."""
 
 
+@dataclass(frozen=True, eq=False)
 class _Pictures:
     """Base colour pictures of meshes."""
 
-    def __init__(self, document: Json, binary: bytes | None, references: References) -> None:
-        self._document = document
-        self._binary = binary
-        self._references = references
+    document: Json
+    binary: bytes | None
+    references: References
 
     def mesh_picture(self, mesh: int | None) -> UInt8[np.ndarray, "h w 3"] | None:
         """The picture of the first textured part; None where there is none that can be read."""
         if mesh is None:
             return None
-        for primitive in self._document["meshes"][mesh]["primitives"]:
-            material = self._document.get("materials", [])[primitive["material"]] if "material" in primitive else {}
-            texture = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
-            if texture is not None:
-                return self._image(self._document["textures"][texture["index"]])
+        for primitive in self.document["meshes"][mesh]["primitives"]:
+            material = self.document.get("materials", [])[primitive["material"]] if "material" in primitive else {}
+            if _texture(material) is not None:
+                return self._image(material)
         return None
 
     def from_photo(self) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
         """Pictures of the objects' materials from the photo, by the texture names that the materials carry."""
         pictures = {}
-        for material in self._document.get("materials", []):
+        for material in self.document.get("materials", []):
             name = FROM_PHOTO.search(str(material.get("name", "")))
-            texture = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
-            picture = (
-                None if name is None or texture is None else self._image(self._document["textures"][texture["index"]])
-            )
+            picture = None if name is None else self._image(material)
             if name is not None and picture is not None:
                 pictures[name.group(1)] = picture
         return pictures
 
-    def _image(self, texture: Json) -> UInt8[np.ndarray, "h w 3"] | None:
-        if "source" not in texture:
+    def _image(self, material: Json) -> UInt8[np.ndarray, "h w 3"] | None:
+        number = _texture(material)
+        if number is None or "source" not in self.document["textures"][number]:
             return None
-        image = self._document["images"][texture["source"]]
+        image = self.document["images"][self.document["textures"][number]["source"]]
         data = self._view_bytes(image["bufferView"]) if "bufferView" in image else self._uri_bytes(image.get("uri", ""))
-        data = None if data is None else self._references.check_image(data, str(image.get("name", "a picture")))
+        data = None if data is None else self.references.check_image(data, str(image.get("name", "a picture")))
         if data is None:
             return None
         with Image.open(io.BytesIO(data), formats=IMAGE_FORMATS) as picture:
             return np.asarray(picture.convert("RGB"))
 
     def _view_bytes(self, view: int) -> bytes | None:
-        row = self._document["bufferViews"][view]
-        buffer = self._document["buffers"][row["buffer"]]
-        data = self._uri_bytes(buffer["uri"]) if "uri" in buffer else self._binary
+        row = self.document["bufferViews"][view]
+        buffer = self.document["buffers"][row["buffer"]]
+        data = self._uri_bytes(buffer["uri"]) if "uri" in buffer else self.binary
         start = row.get("byteOffset", 0)
         return None if data is None else data[start : start + row["byteLength"]]
 
     def _uri_bytes(self, uri: str) -> bytes | None:
         if uri.startswith("data:"):
             return base64.b64decode(uri.partition(",")[2])
-        return self._references.read(uri)
+        return self.references.read(uri)
+
+
+def _texture(material: Json) -> int | None:
+    texture = material.get("pbrMetallicRoughness", {}).get("baseColorTexture")
+    return None if texture is None else texture["index"]

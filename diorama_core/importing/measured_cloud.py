@@ -14,19 +14,15 @@ from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
-from shapely.geometry import MultiPolygon, Polygon, box
+from shapely.geometry import Polygon, box
 from shapely.ops import unary_union
 
 from diorama_core.errors import InputError
-from diorama_core.importing.measured_types import (
-    MeasuredFloor,
-    MeasuredRoom,
-    MeasuredWall,
-)
-from diorama_core.importing.point_cloud import PointCloud
+from diorama_core.importing.measured_types import MeasuredFloor, MeasuredRoom, MeasuredWall
+from diorama_core.importing.point_cloud import LEVEL_M, PointCloud, likely_up, sharpness
 from diorama_core.importing.scanned_boxes import OFF_M, ScannedRoom, boxes_in, is_part_of, rugs_in
 from diorama_core.importing.scanned_openings import find_openings
-from diorama_core.importing.scene_frame import LEVEL_M, likely_up, sharpness
+from diorama_core.importing.storeys import largest_polygon
 from diorama_core.scene.types import yaw_rotation
 
 MAX_REACH_M = 60.0
@@ -181,10 +177,7 @@ def _band(points: Float[np.ndarray, "n 3"], top_m: float) -> Float[np.ndarray, "
 def _outline(points: Float[np.ndarray, "n 3"], top_m: float, *, walls_alone: bool) -> Polygon:
     """The room seen from above: cells between wall lines that were scanned.
 
-    Args:
-        points: the floor at 0.
-        top_m: height of the room.
-        walls_alone: whether neither floor nor ceiling were scanned: all cells are of the room then.
+    All cells are of the room where walls alone were scanned, without floor and ceiling.
     """
     lines = [_lines(points, top_m, axis) for axis in (0, 1)]
     plan = points[:, :2]
@@ -195,9 +188,8 @@ def _outline(points: Float[np.ndarray, "n 3"], top_m: float, *, walls_alone: boo
             grid = np.unique(np.floor((inside - [x0, y0]) / SPAN_M).astype(int), axis=0)
             if walls_alone or len(grid) * SPAN_M**2 >= SCANNED_SHARE * (x1 - x0) * (y1 - y0):
                 cells.append(box(x0, y0, x1, y1))
-    whole = unary_union(cells)
-    largest = max(whole.geoms, key=lambda p: p.area) if isinstance(whole, MultiPolygon) else whole
-    if not isinstance(largest, Polygon) or largest.is_empty:
+    largest = largest_polygon(unary_union(cells))
+    if largest is None:
         low, high = np.quantile(plan, [0.005, 0.995], axis=0)
         return box(*low, *high)
     return Polygon(largest.exterior).simplify(0.01)
@@ -234,8 +226,7 @@ def _lines(points: Float[np.ndarray, "n 3"], top_m: float, axis: int) -> list[fl
 
 def _walls(room: ScannedRoom) -> tuple[MeasuredWall, ...]:
     ring = np.asarray(room.outline.exterior.coords)[:, :2]
-    walls = []
-    for number, (a, b) in enumerate(pairwise(ring)):
-        corners = [[*a, 0.0], [*b, 0.0], [*b, room.top_m], [*a, room.top_m]]
-        walls.append(MeasuredWall(f"wall_{number + 1}", np.array(corners)))
-    return tuple(walls)
+    return tuple(
+        MeasuredWall(f"wall_{number}", np.array([[*a, 0.0], [*b, 0.0], [*b, room.top_m], [*a, room.top_m]]))
+        for number, (a, b) in enumerate(pairwise(ring), 1)
+    )

@@ -3,9 +3,7 @@ planes as they were measured and objects whose shapes fill the boxes."""
 
 from __future__ import annotations
 
-import re
-from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,8 +11,8 @@ from jaxtyping import Float
 from shapely.geometry import Point, Polygon
 
 from diorama_core.geometry.openings import STANDS_OUT_M, faces_behind, with_hole
-from diorama_core.importing.measured_types import MeasuredBox, MeasuredOpening, MeasuredRoom
-from diorama_core.importing.opening import Opened
+from diorama_core.importing.measured_types import RESTS_M, MeasuredBox, MeasuredOpening, MeasuredRoom
+from diorama_core.importing.opening import Names, Opened
 from diorama_core.importing.storeys import (
     ceiling_planes,
     floor_planes,
@@ -32,8 +30,6 @@ from diorama_core.scene.types import Architecture, Candidate, Plane, Pose, Scene
 
 KEEP = 8
 """Candidates of an object."""
-RESTS_M = 0.08
-"""How far the bottom of a box may be off what it stands on."""
 AT_WALL_M = 0.15
 THINNEST_M = 0.005
 """Of a face of a wall: what has no thickness is no solid."""
@@ -57,7 +53,7 @@ def open_room(room: MeasuredRoom, library: ShapeLibrary) -> Opened:
         _facing_the_room(_resting(b, storeys[k].height_m) if k is not None else b, walls)
         for b, k in zip(room.boxes, below, strict=True)
     ]
-    names = _Names()
+    names = Names()
     holders = [
         _holder(index, boxes, planes, floors[k] if k is not None and floors else None) for index, k in enumerate(below)
     ]
@@ -105,16 +101,6 @@ def possible_kinds(kinds: Mapping[str, float], size_m: Float[np.ndarray, "3"]) -
     return {kind: share for kind, share in kinds.items() if is_possible(kind, size_m)}
 
 
-class _Names:
-    def __init__(self) -> None:
-        self._counts: Counter[str] = Counter()
-
-    def new(self, word: str) -> str:
-        stem = re.sub(r"[^a-z0-9]+", "-", word.lower()).strip("-") or "object"
-        self._counts[stem] += 1
-        return f"{stem}-{self._counts[stem]}"
-
-
 def _resting(box: MeasuredBox, floor_m: float) -> MeasuredBox:
     """A box whose bottom is about at the floor ends there."""
     gap = float(box.centre[2] - box.size_m[2] / 2) - floor_m
@@ -158,13 +144,7 @@ def _holder(index: int, boxes: Sequence[MeasuredBox], planes: Sequence[Plane], f
     """What holds a box up: the floor, the ceiling, a wall, or the number of another box."""
     box = boxes[index]
     low, high = (float(box.centre[2] + side * box.size_m[2] / 2) for side in (-1, 1))
-    below = [
-        (float(b.centre[2] + b.size_m[2] / 2), k)
-        for k, b in enumerate(boxes)
-        if k != index
-        and abs(float(b.centre[2] + b.size_m[2] / 2) - low) < RESTS_M
-        and (np.abs(b.R_world_box.T @ (box.centre - b.centre))[:2] < b.size_m[:2] / 2).all()
-    ]
+    below = [(float(b.centre[2] + b.size_m[2] / 2), k) for k, b in enumerate(boxes) if k != index and b.is_under(box)]
     if below:
         return str(max(below)[1])
     if floor is not None and low - float(floor.centre[2]) < RESTS_M:
@@ -196,7 +176,7 @@ def _covers(plane: Plane, box: MeasuredBox) -> bool:
     return bool(Polygon(plane.polygon[:, :2]).buffer(RESTS_M).contains(Point(box.centre[:2])))
 
 
-def _object(names: _Names, box: MeasuredBox, object_id: str, library: ShapeLibrary) -> SceneObject:
+def _object(names: Names, box: MeasuredBox, object_id: str, library: ShapeLibrary) -> SceneObject:
     mount = _mount(object_id)
     held_so = ("floor", "surface") if mount == "floor" else (mount,)
     mounted = {k: v for k, v in box.kinds.items() if category(k).mount in held_so}
@@ -204,25 +184,22 @@ def _object(names: _Names, box: MeasuredBox, object_id: str, library: ShapeLibra
     senses = dict(possible) if box.kinds_know_size else likeliest_kind(possible, box.size_m)
     kind = max(senses, key=lambda k: (senses[k], k))
     query = RetrievalQuery(kind, box.size_m, False, senses)
-    ranked = sorted(
-        (
-            (m.kind_factor * float(np.exp(-size_cost(m.shape.size_m, box.size_m))) * _fit(box, m.shape), m.shape)
-            for m in pool_for(library, query).members
-        ),
-        key=lambda row: (-row[0], row[1].id),
-    )[:KEEP]
-    candidates = tuple(Candidate(s.id, s.size_m, score, _filling(s, box)) for score, s in ranked)
-    best = ranked[0][1]
-    return SceneObject(
-        names.new(best.category),
-        box.label,
-        best.category,
-        best.id,
-        best.size_m,
-        candidates[0].pose,
-        candidates,
-        confidence=box.confidence,
-    )
+    scored = [
+        (m.kind_factor * float(np.exp(-size_cost(m.shape.size_m, box.size_m))) * _fit(box, m.shape), m.shape)
+        for m in pool_for(library, query).members
+    ]
+    ranked = sorted(scored, key=lambda row: (-row[0], row[1].id))
+    item = _with_candidates(names, ranked[0][1].category, ranked, lambda shape: _filling(shape, box))
+    return replace(item, label=box.label, confidence=box.confidence)
+
+
+def _with_candidates(
+    names: Names, category: str, ranked: Sequence[tuple[float, Shape]], pose: Callable[[Shape], Pose]
+) -> SceneObject:
+    """An object that the first of the shapes shows; the next ones may take its place."""
+    candidates = tuple(Candidate(s.id, s.size_m, score, pose(s)) for score, s in ranked[:KEEP])
+    best = candidates[0]
+    return SceneObject(names.new(category), category, category, best.shape_id, best.shape_size_m, best.pose, candidates)
 
 
 def _fit(box: MeasuredBox, shape: Shape) -> float:
@@ -285,23 +262,15 @@ def _with_passages(
     return tuple(cut.values()), unused
 
 
-def _hang(names: _Names, opening: MeasuredOpening, wall: Plane, library: ShapeLibrary) -> SceneObject:
+def _hang(names: Names, opening: MeasuredOpening, wall: Plane, library: ShapeLibrary) -> SceneObject:
     """A door or a window with its back at the wall."""
     yaw = float(np.arctan2(wall.normal[1], wall.normal[0]))
     on_wall = opening.centre - (wall.normal @ opening.centre - wall.offset) * wall.normal
     shapes = library.in_category(opening.kind)
     size = np.array([STANDS_OUT_M, opening.width_m, opening.height_m])
-    ranked = sorted(shapes, key=lambda s: (size_cost(s.size_m[1:], size[1:]), s.id))[:KEEP]
+    ranked = [
+        (float(np.exp(-size_cost(s.size_m[1:], size[1:]))), s)
+        for s in sorted(shapes, key=lambda s: (size_cost(s.size_m[1:], size[1:]), s.id))
+    ]
     centre = on_wall + wall.normal * STANDS_OUT_M / 2
-    candidates = tuple(
-        Candidate(
-            s.id,
-            s.size_m,
-            float(np.exp(-size_cost(s.size_m[1:], size[1:]))),
-            Pose.upright(centre, yaw, size / np.array(s.size_m)),
-        )
-        for s in ranked
-    )
-    best = ranked[0]
-    name = names.new(opening.kind)
-    return SceneObject(name, opening.kind, opening.kind, best.id, best.size_m, candidates[0].pose, candidates)
+    return _with_candidates(names, opening.kind, ranked, lambda s: Pose.upright(centre, yaw, size / np.array(s.size_m)))

@@ -12,6 +12,8 @@ from jaxtyping import Float
 from diorama_core.importing.point_cloud import ScanPhoto
 
 OpeningKind = Literal["door", "window", "opening"]
+RESTS_M = 0.08
+"""How far the bottom of a box may be off what it stands on."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +58,12 @@ class MeasuredBox:
     fits: Mapping[str, float] = field(default_factory=dict)
     """How well shapes agree with the points, by id, 0 to 1; those that were not compared agree as the worst of them."""
 
+    def is_under(self, box: MeasuredBox) -> bool:
+        """Whether another box stands on it."""
+        top, bottom = self.centre[2] + self.size_m[2] / 2, box.centre[2] - box.size_m[2] / 2
+        off = np.abs(self.R_world_box.T @ (box.centre - self.centre))[:2]
+        return abs(float(top - bottom)) < RESTS_M and bool((off < self.size_m[:2] / 2).all())
+
 
 @dataclass(frozen=True, eq=False)
 class MeasuredFloor:
@@ -79,8 +87,3 @@ class MeasuredRoom:
     notes: tuple[str, ...] = field(default=())
     photos: tuple[ScanPhoto, ...] = ()
     """Taken while the room was measured, their cameras in the world."""
-
-    @property
-    def floor(self) -> Float[np.ndarray, "n 2"] | None:
-        """Outline of the first floor, where the file has one."""
-        return self.floors[0].outline if self.floors else None

@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +15,10 @@ from jaxtyping import Float
 
 from diorama_core.errors import InputError, LibraryError
 from diorama_core.importing.marked import MarkedFile
-from diorama_core.importing.part import Part
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.usd_meshes import usd_scene
 from diorama_core.library.ingest.usd_stage import Z_UP, open_stage, usd_errors, world_of
-from diorama_core.scene.types import SceneObject
+from diorama_core.scene.types import SceneObject, yaw_rotation
 
 LARGEST_OBJECT_M = 3.5
 """Groups wider than this are rooms or collections, not one object."""
@@ -29,12 +29,48 @@ HUGE_M, USUAL_M = 100.0, 60.0
 SUBUNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
 
 
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One object of a file."""
+
+    name: str
+    scene: trimesh.Scene
+    """Geometry in the world: +Z up, metres."""
+    M_world: Float[np.ndarray, "4 4"]
+    """The node's frame to the world."""
+    key: str | None = None
+    """Equal for copies of one geometry; None where unknown."""
+    yaw_rad: float = 0.0
+    """How far its own axes are turned about up: shapes are taken in along their own axes."""
+    front: str | None = None
+    """Own axis that its front looks along, where the file says so."""
+    category: str | None = None
+    room: str | None = None
+    """Name of the room whose floor it is, where the file has rooms; None for everything else."""
+
+    @cached_property
+    def whole(self) -> trimesh.Trimesh:
+        """All geometry as one mesh."""
+        return self.scene.to_geometry()
+
+    @property
+    def turn(self) -> Float[np.ndarray, "3 3"]:
+        """Own axes to the world's."""
+        return yaw_rotation(self.yaw_rad)
+
+    @property
+    def local_scene(self) -> trimesh.Scene:
+        """The geometry along the part's own axes."""
+        scene, T = self.scene.copy(), np.eye(4)
+        T[:3, :3] = self.turn.T
+        scene.apply_transform(T)
+        return scene
+
+
 def parts_of_gltf(path: Path, unit_m: float | None = None) -> tuple[tuple[Part, ...], tuple[str, ...]]:
     """Objects of a GLB or glTF file, and notes; raises `InputError` when it cannot be read.
 
-    Args:
-        path: The file.
-        unit_m: Metres in one unit of it; None believes the format, unless the scene would be larger than a hall.
+    Without `unit_m` the format is believed, unless the scene would be larger than a hall.
     """
     return _to_metres(_model(path), Z_UP, unit_m)
 
@@ -99,11 +135,8 @@ def split_scene(scene: trimesh.Scene, to_world: Float[np.ndarray, "4 4"]) -> tup
         node = waiting.pop()
         nodes = _own(children, node, boxes)
         loose = [str(c) for c in children.get(node, ()) if c not in nodes]
-        if nodes:
-            top = max(boxes[n][1, 2] for n in nodes)
-            stands = [c for c in loose if _bottom(children, c, boxes) > top - TOUCH_M]
-        else:
-            stands = []
+        top = max((boxes[n][1, 2] for n in nodes), default=np.inf)
+        stands = [c for c in loose if _bottom(children, c, boxes) > top - TOUCH_M] if nodes else []
         below = [n for n in _subtree(children, node, set(stands)) if n in boxes]
         if not below:
             waiting += reversed(loose)
@@ -170,9 +203,8 @@ def _part(scene: trimesh.Scene, name: str, nodes: Sequence[str], root: str, to_w
 
 def _fingerprint(points: Float[np.ndarray, "n 3"], faces: np.ndarray) -> str:
     """Equal for equal geometry in its node's frame."""
-    return hashlib.sha256((np.round(points, 4) + 0.0).tobytes() + np.asarray(faces, np.int64).tobytes()).hexdigest()[
-        :16
-    ]
+    digest = hashlib.sha256((np.round(points, 4) + 0.0).tobytes() + np.asarray(faces, np.int64).tobytes())
+    return digest.hexdigest()[:16]
 
 
 def _yaw(M_root: Float[np.ndarray, "4 4"], to_world: Float[np.ndarray, "4 4"]) -> float:

@@ -116,13 +116,8 @@ def _camera(scene: Scene, artefacts: dict, inputs: Inputs, progress: Progress) -
 
 
 def _thing(item: SceneObject) -> MeasuredThing:
-    kinds = frozenset((item.category, *kinds_of_label(item.label)))
-    return MeasuredThing(kinds, _middle(item), item.pose.yaw_rad, item.size_m)
-
-
-def _middle(item: SceneObject) -> Float[np.ndarray, "3"]:
-    corners = item.corners_world
-    return (corners.min(axis=0) + corners.max(axis=0)) / 2
+    kinds, corners = frozenset((item.category, *kinds_of_label(item.label))), item.corners_world
+    return MeasuredThing(kinds, (corners.min(axis=0) + corners.max(axis=0)) / 2, item.pose.yaw_rad, item.size_m)
 
 
 def _floor(scene: Scene) -> Polygon:
@@ -156,10 +151,9 @@ def _label(item: DetectedObject, scanned: SceneObject | None) -> LabelledBox:
 
 def _filling(item: SceneObject, measured: SceneObject) -> SceneObject:
     """The object, and every candidate, filling its measured box, its front where the scan says."""
-    size, R, centre = measured.size_m, measured.pose.R_world_object, measured.pose.position
 
     def filling(shape_size_m: tuple[float, float, float]) -> Pose:
-        return Pose(R, centre, size / np.array(shape_size_m))
+        return replace(measured.pose, scale=measured.size_m / np.array(shape_size_m))
 
     candidates = tuple(replace(c, pose=filling(c.shape_size_m)) for c in item.candidates)
     return replace(item, pose=filling(item.shape_size_m), candidates=candidates)

@@ -1,4 +1,7 @@
-"""Measured points in metres, and the pictures that were taken with them."""
+"""Measured points in metres, the pictures that were taken with them, and frame, unit and the way up of a scene.
+
+Where a file does not say its unit, rooms do: they are about as high and as large everywhere.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,8 @@ import trimesh
 from jaxtyping import Float
 from scipy.spatial import cKDTree
 
-from diorama_core.importing.cloud_units import Unit, likely_unit
+from diorama_core.library.ingest.given import AXES, axis_vector
+from diorama_core.library.ingest.models import RawModel
 from diorama_core.scene.types import Camera
 
 MAX_POINTS = 4_000_000
@@ -26,6 +30,11 @@ MESH_POINTS_M2 = 1500.0
 """Points that stand for a square metre of a mesh."""
 GUESSED = "lengths were taken for"
 """How a note on a guessed unit begins."""
+HEIGHT_M, HEIGHT_LOG_SIGMA = 2.6, 0.3
+WIDTH_M, WIDTH_LOG_SIGMA = 4.5, 0.8
+"""Size of a room: its height, and the square root of its floor's area."""
+BINS = 150
+"""Number of bins of the histogram that tells levels from other axes."""
 Up = Float[np.ndarray, "3"]
 
 
@@ -83,11 +92,7 @@ def to_metres(cloud: PointCloud) -> PointCloud:
 
 
 def without_floaters(points: Float[np.ndarray, "n 3"]) -> tuple[Float[np.ndarray, "m 3"], tuple[str, ...]]:
-    """The points without those that float alone: reflections, dust, and what networks dream up; and the note.
-
-    Args:
-        points: finite, in any unit.
-    """
+    """Finite points without those that float alone: reflections, dust, and what networks dream up; and the note."""
     some = points[:: max(1, len(points) // ASKED)]
     nearest = cKDTree(points).query(some, k=[2])[0] if len(points) > 1 else np.zeros(1)
     cell = ALONE * float(np.median(nearest))
@@ -125,3 +130,115 @@ def points_of_mesh(loaded: object) -> Float[np.ndarray, "n 3"]:
         count = int(np.clip(loaded.area * MESH_POINTS_M2, MIN_POINTS, MAX_POINTS))
         return np.asarray(trimesh.sample.sample_surface(loaded, count, seed=20)[0], np.float64)
     return np.asarray(getattr(loaded, "vertices", np.zeros((0, 3))), np.float64).reshape(-1, 3)
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit of length."""
+
+    name: str
+    metres: float
+    share: float
+    """Prior probability among the clouds that do not state their unit."""
+
+
+UNITS = (
+    Unit("metres", 1.0, 0.9),
+    Unit("centimetres", 0.01, 0.03),
+    Unit("millimetres", 0.001, 0.04),
+    Unit("feet", 0.3048, 0.02),
+    Unit("inches", 0.0254, 0.01),
+)
+
+
+def likely_unit(points: Float[np.ndarray, "n 3"], up: Float[np.ndarray, "3"] | None) -> Unit:
+    """The unit in which the points are most likely a room; `up` is against gravity, along an axis."""
+    low, high = np.quantile(points, [0.005, 0.995], axis=0)
+    extent = np.maximum(high - low, 1e-9)
+    if up is not None:
+        axis = int(np.argmax(np.abs(up)))
+    else:
+        axis = max((2, 1), key=lambda a: _level_share(points[:, a], float(low[a]), float(high[a])))
+    width = float(np.sqrt(np.prod(np.delete(extent, axis))))
+    return max(UNITS, key=lambda unit: _log_likelihood(unit, float(extent[axis]), width))
+
+
+def _log_likelihood(unit: Unit, height: float, width: float) -> float:
+    off = np.log(unit.metres * height / HEIGHT_M) / HEIGHT_LOG_SIGMA
+    across = np.log(unit.metres * width / WIDTH_M) / WIDTH_LOG_SIGMA
+    return float(np.log(unit.share) - (off**2 + across**2) / 2)
+
+
+def _level_share(values: Float[np.ndarray, "n"], low: float, high: float) -> float:
+    """How much of all values lies in few bins."""
+    if high <= low:
+        return 1.0
+    counts, _ = np.histogram(values, BINS, (low, high))
+    return float(((counts / max(counts.sum(), 1)) ** 2).sum())
+
+
+LOWER = 0.85
+"""Largest ratio of extents at which the shorter axis is vertical although the format's habit says otherwise."""
+
+
+def frame_of_scene(raw: RawModel, unit_m: float | None = None) -> tuple[Float[np.ndarray, "4 4"], tuple[str, ...]]:
+    """The frame and unit of a room's scene to the world (+Z up, metres), and notes about what had to be guessed.
+
+    Without `unit_m` it is what the format says or the size makes likely.
+    """
+    promised = max(AXES, key=lambda axis: raw.convention.up.get(axis, 0.0))
+    extents = np.asarray(raw.scene.extents, float)
+    others = [a for a in ("+y", "+z") if a != promised and raw.convention.up.get(a, 0.0) > 0.05]
+    up = next((a for a in others if _extent(extents, a) < LOWER * _extent(extents, promised)), promised)
+    corners = np.asarray(raw.scene.to_geometry().vertices, np.float64)
+    sure = {u: p for u, p in raw.convention.unit.items() if p > 0.75} if unit_m is None else {unit_m: 1.0}
+    unit = likely_unit(corners, axis_vector(up).astype(float))
+    metres = next(iter(sure)) if sure else unit.metres
+    z = axis_vector(up).astype(float)
+    x = np.array([1.0, 0.0, 0.0]) if abs(z[0]) < 0.5 else np.array([0.0, 1.0, 0.0])
+    T = np.eye(4)
+    T[:3, :3] = np.stack([x, np.cross(z, x), z]) * metres
+    notes = [] if up == promised else [f"its up was taken for {up}: so the room is lower than it is wide"]
+    notes += [f"lengths were taken for {unit.name}"] if not sure and metres != 1.0 else []
+    return T, tuple(notes)
+
+
+def _extent(extents: Float[np.ndarray, "3"], axis: str) -> float:
+    return float(extents["xyz".index(axis[1])])
+
+
+LEVEL_M = 0.02
+"""Bin height of the histogram of heights."""
+WALL_SHARE = 0.08
+"""Share of the plan at its border, ignored because its points belong to walls."""
+LEVEL_SHARE = 0.06
+"""Share of the height at each end that counts as floor and as ceiling."""
+UPSIDE_DOWN = 1.6
+"""So many times more things above the middle than below it are a room on its head."""
+MAX_ASKED = 200_000
+
+
+def likely_up(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
+    """Unit vector against gravity, along an axis of the points.
+
+    Levels (floor, ceiling, boards) are densest across it; furniture fills the lower half of a room more than the upper.
+    """
+    asked = points[:: max(1, -(-len(points) // MAX_ASKED))]
+    axis = max((2, 1), key=lambda a: sharpness(asked[:, a], LEVEL_M))
+    low, high = np.quantile(asked, [0.01, 0.99], axis=0)
+    share = (asked - low) / np.maximum(high - low, 1e-9)
+    plan = np.delete(share, axis, axis=1)
+    inner = ((plan > WALL_SHARE) & (plan < 1 - WALL_SHARE)).all(axis=1)
+    height = share[inner, axis]
+    below = int(((height > LEVEL_SHARE) & (height < 0.5)).sum())
+    above = int(((height > 0.5) & (height < 1 - LEVEL_SHARE)).sum())
+    up = np.zeros(3)
+    up[axis] = -1.0 if above > UPSIDE_DOWN * max(below, 1) else 1.0
+    return up
+
+
+def sharpness(values: Float[np.ndarray, "n"], step: float) -> float:
+    """How much of all values lies in few bins."""
+    low, high = np.quantile(values, [0.005, 0.995])
+    counts, _ = np.histogram(values, np.arange(low - 0.1, high + 0.1 + step, step))
+    return float((counts.astype(float) ** 2).sum()) / max(len(values), 1) ** 2

@@ -2,9 +2,8 @@
 
 LAS and LAZ need laspy, E57 needs pye57 (extra `scan`). `POINT_FORMS` is the table of what is read.
 
-Gaussian splats as points: those that are plainly there. Faint ones and huge ones float around what was filmed.
-
-PLY as Kerbl et al., 3D Gaussian Splatting (2023), write it (opacity as a logit, scales as logarithms), and `.splat`
+Of Gaussian splats those are points that are plainly there: faint and huge ones float around what was filmed. PLY is
+read as Kerbl et al., 3D Gaussian Splatting (2023), write it (opacity as a logit, scales as logarithms), and `.splat`
 (32 bytes a splat).
 """
 
@@ -13,7 +12,7 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
@@ -25,10 +24,16 @@ from jaxtyping import Bool, Float
 
 from diorama_core.errors import DioramaError, InputError, UnavailableError
 from diorama_core.importing.array_clouds import is_array_cloud, is_float_dump, read_array_cloud, read_float_dump
-from diorama_core.importing.cloud_units import likely_unit
-from diorama_core.importing.data_set_frames import DATA_SET_FORMS
-from diorama_core.importing.depth_frames import FRAME_FORMS, UP_Y, UP_Z, FrameForm, cloud_of_frames
-from diorama_core.importing.point_cloud import MAX_POINTS, MIN_POINTS, PointCloud, points_of_mesh, to_metres, unit_note
+from diorama_core.importing.depth_frames import FRAME_FORMS, UP_Y, UP_Z, cloud_of_frames
+from diorama_core.importing.point_cloud import (
+    MAX_POINTS,
+    MIN_POINTS,
+    PointCloud,
+    likely_unit,
+    points_of_mesh,
+    to_metres,
+    unit_note,
+)
 from diorama_core.io.bounded import megabytes, read_bytes, shorten
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.file_heads import FileHead, head_of
@@ -53,11 +58,7 @@ def is_splat_ply(head: bytes) -> bool:
 
 
 def read_splat_ply(path: Path) -> Float[np.ndarray, "n 3"]:
-    """The centres of the splats that are plainly there.
-
-    Raises:
-        InputError: the file is cut off or not written plainly.
-    """
+    """The centres of the splats that are plainly there."""
     rows = _vertices(path)
     scales = np.exp(np.column_stack([rows[f"scale_{k}"] for k in range(3)]).astype(np.float64))
     points = np.column_stack([rows[axis] for axis in "xyz"]).astype(np.float64)
@@ -123,11 +124,7 @@ def is_text_cloud(text: str) -> bool:
 
 
 def read_text_cloud(path: Path) -> Float[np.ndarray, "n 3"]:
-    """The points of a text file: the columns x, y and z where a heading names them, else the first three.
-
-    Raises:
-        InputError: there are no rows of numbers in it.
-    """
+    """The points of a text file: the columns x, y and z where a heading names them, else the first three."""
     with path.open(encoding="utf-8-sig", errors="replace") as stream:
         beginning = list(islice(stream, LOOKED_AT))
     first = next((k for k, line in enumerate(beginning) if _ROW.match(line)), None)
@@ -160,11 +157,7 @@ def read_pcd(path: Path) -> Float[np.ndarray, "n 3"]:
 
 MESH_NAMES = ("raw.glb", "export.obj", "export_refined.obj", "textured_output.obj", "*.glb", "*.obj", "*.ply")
 """File names of a scanner app's mesh, likeliest first."""
-
-
 MAX_BYTES = 2_000_000_000
-
-
 OWN_PLY = b"comment Diorama: metres, +Z up"
 
 
@@ -188,7 +181,7 @@ def read_points(path: Path) -> PointCloud:
         UnavailableError: an optional library is missing.
     """
     head = head_of(path)
-    form = _form_of(head)
+    form = next((form for form in POINT_FORMS if form.tells(head)), None)
     if form is None:
         raise InputError(f"{path} holds no points that are read: {', '.join(f.name for f in POINT_FORMS)}")
     if head.size > MAX_BYTES:
@@ -205,10 +198,6 @@ def read_points(path: Path) -> PointCloud:
         raise InputError(f"{path.name} has {len(points)} points; a room needs {MIN_POINTS} or more")
     step = -(-len(points) // MAX_POINTS)
     return replace(cloud, points=points[::step])
-
-
-def _form_of(head: FileHead) -> PointForm | None:
-    return next((form for form in POINT_FORMS if form.tells(head)), None)
 
 
 def _from_ply(path: Path) -> PointCloud:
@@ -253,8 +242,7 @@ def _from_las(path: Path) -> PointCloud:
         step = max(1, -(-reader.header.point_count // MAX_POINTS))
         for chunk in reader.chunk_iterator(2_000_000):
             rows.append(np.column_stack([chunk.x, chunk.y, chunk.z])[::step])
-    points = np.vstack(rows).astype(np.float64)
-    return to_metres(PointCloud(points - np.append(np.median(points[:, :2], axis=0), 0.0), UP_Z))
+    return to_metres(_recentre(rows))
 
 
 def _from_e57(path: Path) -> PointCloud:
@@ -270,6 +258,11 @@ def _from_e57(path: Path) -> PointCloud:
             rows.append(np.column_stack([scan[f"cartesian{axis}"] for axis in "XYZ"]))
     finally:
         opened.close()
+    return _recentre(rows)
+
+
+def _recentre(rows: Sequence[np.ndarray]) -> PointCloud:
+    """Points, +Z up, around the middle of their plan: grids of surveyors begin far away."""
     points = np.vstack(rows).astype(np.float64)
     return PointCloud(points - np.append(np.median(points[:, :2], axis=0), 0.0), UP_Z)
 
@@ -287,10 +280,6 @@ def _meshes_in(folder: Path) -> Iterator[Path]:
 
 def _is_ply(head: FileHead) -> bool:
     return head.head.startswith(b"ply") or (head.suffix == ".ply" and not head.is_folder)
-
-
-def _frame_form(form: FrameForm) -> PointForm:
-    return PointForm(form.name, "a folder, or its zip", form.tells, partial(cloud_of_frames, form=form))
 
 
 POINT_FORMS = (
@@ -318,7 +307,8 @@ POINT_FORMS = (
     PointForm(
         "points as bare floats, as of KITTI", ".bin", is_float_dump, partial(_from_array, read_float_dump, "")
     ),
-    *(_frame_form(form) for form in (*FRAME_FORMS, *DATA_SET_FORMS)),
+    *(PointForm(form.name, "a folder, or its zip", form.tells, partial(cloud_of_frames, form=form))
+      for form in FRAME_FORMS),
     PointForm(
         "the mesh of a scanner app", "a folder, or its zip",
         lambda h: h.is_folder and "scene.json" not in h.names and any(_meshes_in(h.path)), _from_app_mesh,

@@ -18,13 +18,7 @@ from jaxtyping import Float
 from shapely.geometry import Polygon
 
 from diorama_core.errors import InputError
-from diorama_core.importing.measured_types import (
-    MeasuredBox,
-    MeasuredOpening,
-    MeasuredRoom,
-    MeasuredWall,
-    OpeningKind,
-)
+from diorama_core.importing.measured_types import MeasuredBox, MeasuredOpening, MeasuredRoom, MeasuredWall, OpeningKind
 from diorama_core.importing.roomplan_parts import (
     MAX_PARTS,
     box_of,
@@ -32,11 +26,11 @@ from diorama_core.importing.roomplan_parts import (
     kinds_of,
     move,
     name_floors,
+    read_usd,
     storey_notes,
     without_unusable,
     words,
 )
-from diorama_core.importing.roomplan_usd import read_usd
 from diorama_core.io.bounded import read_json, shorten
 from diorama_core.library.ingest.usd_stage import Z_UP
 
@@ -61,12 +55,10 @@ def read_room_plan(path: Path) -> MeasuredRoom | None:
 
 def _is_in_range(room: MeasuredRoom) -> bool:
     """True if all measurements are finite, and near enough to be computed with."""
-    numbers: list[np.ndarray] = [wall.polygon for wall in room.walls]
-    numbers += [values for box in room.boxes for values in (box.centre, box.size_m)]
-    numbers += [opening.centre for opening in room.openings]
-    numbers += [np.array([opening.width_m, opening.height_m]) for opening in room.openings]
-    numbers += [np.array([wall.thickness_m for wall in room.walls])]
-    numbers += [values for floor in room.floors for values in (floor.outline, np.array(floor.height_m))]
+    numbers: list[np.ndarray | float] = [v for wall in room.walls for v in (wall.polygon, wall.thickness_m)]
+    numbers += [v for box in room.boxes for v in (box.centre, box.size_m)]
+    numbers += [v for opening in room.openings for v in (opening.centre, opening.width_m, opening.height_m)]
+    numbers += [v for floor in room.floors for v in (floor.outline, floor.height_m)]
     return all(bool((np.abs(values) < REACH_M).all()) for values in numbers)
 
 
@@ -86,7 +78,10 @@ def _from_json(path: Path) -> MeasuredRoom | None:
     if not all(isinstance(rows, list) for rows in names.values()) or sum(map(len, names.values())) > MAX_PARTS:
         raise InputError(f"{path.name}: more than {MAX_PARTS} parts, or lists that are none; export the scan again")
     try:
-        walls = tuple(_json_wall(row, number) for number, row in enumerate(names["walls"], 1))
+        walls = tuple(
+            MeasuredWall(f"wall-{number}", _outline(row), float(_dimensions(row)[2]))
+            for number, row in enumerate(names["walls"], 1)
+        )
         ids = {str(row.get("identifier")): wall.id for row, wall in zip(names["walls"], walls, strict=True)}
         openings = tuple(_json_opening(row, kind, ids) for key, kind in _SURFACES.items() for row in names[key])
         boxes, left_out = without_unusable(_json_box(row) for row in names["objects"])
@@ -155,10 +150,6 @@ def _dimensions(row: Mapping[str, Any]) -> Float[np.ndarray, "3"]:
 def _word(value: object) -> str:
     """The name of a Swift enumeration's case: a string, or an object with one key."""
     return next(iter(value), "") if isinstance(value, dict) else str(value)
-
-
-def _json_wall(row: Mapping[str, Any], number: int) -> MeasuredWall:
-    return MeasuredWall(f"wall-{number}", _outline(row), float(_dimensions(row)[2]))
 
 
 def _json_opening(row: Mapping[str, Any], kind: OpeningKind, walls: Mapping[str, str]) -> MeasuredOpening:

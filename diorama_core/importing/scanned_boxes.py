@@ -1,14 +1,11 @@
 """Boxes around what stands, lies and hangs in a scanned room, each with its back at the wall that it stands at.
 
-Rugs in the points of a scan: places where the floor is a little higher, level, and rectangular.
+A rug is thinner than what `measure_cloud` leaves to the floor: it is a place that is a little higher, level, and
+rectangular, seen where a scan is finer than it is thick. Furniture on it hides a part, so that its rectangle need not
+be full, but no bare floor may be inside.
 
-A rug is thinner than what `measure_cloud` leaves to the floor. It is seen where a scan is finer than the rug is thick;
-furniture on it hides a part, so that its rectangle need not be full, but no bare floor may be inside.
-
-Furniture apart from what lies on it, in the points of a scan.
-
-A board is a level that much of a thing's outline fills and above which little is. What is above it lies on it, unless
-it reaches from one side to the other, as backs of chairs and heads of beds do.
+Furniture is apart from what lies on it. A board is a level that much of a thing's outline fills and above which little
+is. What is above it lies on it, unless it reaches from one side to the other, as backs of chairs and heads of beds do.
 """
 
 from __future__ import annotations
@@ -19,16 +16,13 @@ from typing import Literal
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 from scipy import ndimage
 from scipy.spatial import cKDTree
 from shapely.geometry import Polygon, box
 
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.importing.measured_types import (
-    MeasuredBox,
-    MeasuredOpening,
-)
+from diorama_core.importing.measured_types import MeasuredBox, MeasuredOpening
 from diorama_core.library.taxonomy import CARRIED_KINDS, CATEGORIES, RUGS, UNKNOWN
 from diorama_core.scene.types import yaw_rotation
 
@@ -93,9 +87,7 @@ def boxes_in(points: Float[np.ndarray, "n 3"], room: ScannedRoom) -> tuple[tuple
     left = points[inside]
     if not len(left):
         return (), 0
-    low = left.min(axis=0)
-    cells = np.floor((left - low) / max(CELL_M, SPARSE * _spacing(left))).astype(int)
-    grid = np.zeros(cells.max(axis=0) + 1, bool)
+    cells, grid = _cells(left, max(CELL_M, SPARSE * _spacing(left)))
     grid[tuple(cells.T)] = True
     labels, count = ndimage.label(grid, np.ones((3, 3, 3)))
     which = labels[tuple(cells.T)]
@@ -120,6 +112,12 @@ def rugs_in(points: Float[np.ndarray, "n 3"], room: ScannedRoom) -> tuple[Measur
 
     inside = points[shapely.contains_xy(room.outline.buffer(-OFF_M), points[:, 0], points[:, 1])]
     return tuple(replace(_box(rug, room), kinds=dict.fromkeys(sorted(RUGS), 1.0)) for rug in find_rugs(inside))
+
+
+def _cells(points: Float[np.ndarray, "n d"], side_m: float) -> tuple[Int[np.ndarray, "n d"], Bool[np.ndarray, "..."]]:
+    """The cell of each point, and an empty grid of all cells."""
+    cells = np.floor((points - points.min(axis=0)) / side_m).astype(int)
+    return cells, np.zeros(cells.max(axis=0) + 1, bool)
 
 
 def _spacing(points: Float[np.ndarray, "n 3"]) -> float:
@@ -236,11 +234,7 @@ SETTINGS = RugSettings()
 
 
 def find_rugs(points: Float[np.ndarray, "n 3"]) -> list[Float[np.ndarray, "_ 3"]]:
-    """Points of each rug, the largest first.
-
-    Args:
-        points: of the room, away from walls; the floor at 0, +Z up.
-    """
+    """Points of each rug, the largest first, among those of a room away from its walls, its floor at 0."""
     low = _free(points)
     below = low[low[:, 2] <= 0, 2]
     if len(below) < SETTINGS.min_points:
@@ -256,8 +250,7 @@ def _free(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
     points = points[points[:, 2] < SETTINGS.standing_m]
     if not len(points):
         return points
-    cells = np.floor((points[:, :2] - points[:, :2].min(axis=0)) / SETTINGS.cell_m).astype(int)
-    grid = np.zeros(cells.max(axis=0) + 1, bool)
+    cells, grid = _cells(points[:, :2], SETTINGS.cell_m)
     low = points[:, 2] < SETTINGS.max_height_m
     grid[tuple(cells[~low].T)] = True
     return points[low & ~grid[tuple(cells.T)]]
@@ -265,8 +258,7 @@ def _free(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
 
 def _pieces(low: Float[np.ndarray, "n 3"], raised: Bool[np.ndarray, " n"]) -> Iterator[Float[np.ndarray, "_ 3"]]:
     """Raised points in groups that are apart from each other."""
-    cells = np.floor((low[:, :2] - low[:, :2].min(axis=0)) / SETTINGS.cell_m).astype(int)
-    grid = np.zeros(cells.max(axis=0) + 1, bool)
+    cells, grid = _cells(low[:, :2], SETTINGS.cell_m)
     grid[tuple(cells[raised].T)] = True
     grown = ndimage.binary_dilation(grid, np.ones((3, 3), bool), iterations=SETTINGS.reach)
     labels, count = ndimage.label(grown)
@@ -291,18 +283,11 @@ def _is_rug(piece: Float[np.ndarray, "n 3"], floor: Float[np.ndarray, "m 3"], no
 
 
 def apart_from_tops(points: Float[np.ndarray, "n 3"]) -> list[Float[np.ndarray, "_ 3"]]:
-    """The points of a thing, and those of each thing that lies on it; all of them together where nothing does.
-
-    Args:
-        points: +Z up, along the room's axes.
-    """
-    low, high = points.min(axis=0), points.max(axis=0)
-    cells = np.floor((points - low) / TOP_CELL_M).astype(int)
-    counts = cells.max(axis=0) + 1
-    grid = np.zeros(counts, bool)
+    """The points of a thing, and those of each thing that lies on it; all of them together where nothing does."""
+    cells, grid = _cells(points, TOP_CELL_M)
     grid[tuple(cells.T)] = True
     board = _board(grid)
-    if board is None or (high[2] - low[2]) - (board + 1) * TOP_CELL_M < MIN_ABOVE_M:
+    if board is None or np.ptp(points[:, 2]) - (board + 1) * TOP_CELL_M < MIN_ABOVE_M:
         return [points]
     above = grid.copy()
     above[:, :, : board + 2] = False

@@ -19,7 +19,7 @@ from diorama_core.artefacts import DetectedObject, Photo
 from diorama_core.errors import InputError
 from diorama_core.geometry.shape_appearance import SHARED_APPEARANCES
 from diorama_core.importing.depth_frames import read_depth
-from diorama_core.importing.measured_room import RESTS_M, likeliest_kind, possible_kinds
+from diorama_core.importing.measured_room import likeliest_kind, possible_kinds
 from diorama_core.importing.measured_types import MeasuredBox, MeasuredRoom
 from diorama_core.importing.point_cloud import ScanPhoto
 from diorama_core.io.bounded import read_picture
@@ -61,12 +61,7 @@ UNSEEN_WEIGHT = 0.5
 
 
 def with_scanned_kinds(room: MeasuredRoom, library: ShapeLibrary, *, look: bool = True) -> MeasuredRoom:
-    """The room, the kinds of its scanned boxes as likely as everything says.
-
-    Args:
-        room: boxes without points keep their kinds.
-        library: whose shapes are compared with points.
-        look: whether the room's photos are looked at.
+    """The room, the kinds of its scanned boxes as likely as its photos (where `look` says so) and all else say.
 
     Raises:
         InputError: a photo cannot be read.
@@ -120,16 +115,8 @@ def _with_shapes(box: MeasuredBox, kinds: Mapping[str, float], library: ShapeLib
 
 def _carrier(box: MeasuredBox, boxes: Sequence[MeasuredBox]) -> int | None:
     """The larger box that a box stands on."""
-    low = float(box.centre[2] - box.size_m[2] / 2)
-    below = [
-        k
-        for k, b in enumerate(boxes)
-        if b is not box
-        and np.prod(b.size_m) > np.prod(box.size_m)
-        and abs(float(b.centre[2] + b.size_m[2] / 2) - low) < RESTS_M
-        and (np.abs(b.R_world_box.T @ (box.centre - b.centre))[:2] < b.size_m[:2] / 2).all()
-    ]
-    return below[0] if below else None
+    larger = (k for k, b in enumerate(boxes) if np.prod(b.size_m) > np.prod(box.size_m) and b.is_under(box))
+    return next(larger, None)
 
 
 @dataclass(frozen=True, eq=False)

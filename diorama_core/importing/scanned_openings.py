@@ -42,6 +42,7 @@ FRAME_M = 0.15
 BARS_M = 0.12
 """Bars in a window are narrower."""
 SQUARE_CELLS = 3
+SQUARE = np.ones((SQUARE_CELLS, SQUARE_CELLS), np.uint8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,13 +71,7 @@ class _Rectangle:
 def find_openings(
     points: Float[np.ndarray, "n 3"], walls: Sequence[MeasuredWall], floor_outline: Float[np.ndarray, "k 2"]
 ) -> tuple[MeasuredOpening, ...]:
-    """Openings of a room's walls.
-
-    Args:
-        points: of the scan, +Z up, the floor at 0.
-        walls: upright rectangles.
-        floor_outline: the room seen from above, either way round.
-    """
+    """Openings of a room's upright walls, by the points of a scan whose floor is at 0."""
     area = signed_area(floor_outline)
     return tuple(chain.from_iterable(_wall_openings(points, wall, np.sign(area)) for wall in walls))
 
@@ -94,9 +89,7 @@ def _wall_openings(points: Float[np.ndarray, "n 3"], wall: MeasuredWall, turn: f
         return []
     rectangles: list[_Rectangle] = []
     for rectangle in (*_doors(grid), *_holes(grid)):
-        if any(_overlap(rectangle, other) for other in rectangles):
-            continue
-        rectangles.append(rectangle)
+        rectangles += [] if any(_overlap(rectangle, other) for other in rectangles) else [rectangle]
     return [_opening(r, grid, start, along, wall.id) for r in rectangles]
 
 
@@ -121,7 +114,7 @@ def _grid(local: Float[np.ndarray, "n 3"], length_m: float, height_m: float) -> 
     # Not the floor, the ceiling and the walls beside it, which are before every wall.
     amid = ((local[:, :2] > ON_WALL_M) & (local[:, :2] < np.array([length_m, height_m]) - ON_WALL_M)).all(axis=1)
     before = local[amid & (local[:, 2] >= ON_WALL_M) & (local[:, 2] < BEFORE_M)]
-    hidden = _grow(tally(before, np.ones(len(before))) > 0, SQUARE_CELLS)
+    hidden = cv2.dilate((tally(before, np.ones(len(before))) > 0).astype(np.uint8), SQUARE) > 0
     return _Grid(cell, count > 0, cv2.medianBlur(relief.astype(np.float32), 3).astype(np.float64), hidden)
 
 
@@ -130,12 +123,9 @@ def _holes(grid: _Grid) -> list[_Rectangle]:
     empty = (~grid.points & ~grid.hidden).astype(np.uint8)
     bars = 2 * round(BARS_M / grid.cell_m / 2) + 1
     joined = cv2.morphologyEx(empty, cv2.MORPH_CLOSE, np.ones((bars, bars), np.uint8))
-    joined = cv2.morphologyEx(joined, cv2.MORPH_OPEN, np.ones((SQUARE_CELLS, SQUARE_CELLS), np.uint8))
-    holes = []
-    for rectangle in _rectangles(joined, grid):
-        if _rim(rectangle, grid) >= MIN_RIM and not _is_low(rectangle, grid):
-            holes.append(_with_frame(rectangle, grid))
-    return holes
+    joined = cv2.morphologyEx(joined, cv2.MORPH_OPEN, SQUARE)
+    found = _rectangles(joined, grid)
+    return [_with_frame(r, grid) for r in found if _rim(r, grid) >= MIN_RIM and not _is_low(r, grid)]
 
 
 def _doors(grid: _Grid) -> list[_Rectangle]:
@@ -143,9 +133,9 @@ def _doors(grid: _Grid) -> list[_Rectangle]:
     doors = []
     for side in (1.0, -1.0):
         leaf = grid.points & ~grid.hidden & (side * grid.relief_m > RELIEF_M)
-        off = cv2.morphologyEx(leaf.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((SQUARE_CELLS, SQUARE_CELLS), np.uint8))
+        off = cv2.morphologyEx(leaf.astype(np.uint8), cv2.MORPH_CLOSE, SQUARE)
         off = ndimage.binary_fill_holes(off).astype(np.uint8)  # panes of a glazed door
-        off = cv2.morphologyEx(off, cv2.MORPH_OPEN, np.ones((SQUARE_CELLS, SQUARE_CELLS), np.uint8))
+        off = cv2.morphologyEx(off, cv2.MORPH_OPEN, SQUARE)
         doors += [r for r in _rectangles(off, grid) if _is_door(r, grid)]
     return doors
 
@@ -210,8 +200,3 @@ def _opening(
 
 def _overlap(a: _Rectangle, b: _Rectangle) -> bool:
     return a.left < b.right and b.left < a.right and a.low < b.high and b.low < a.high
-
-
-def _grow(cells: Bool[np.ndarray, "h w"], steps: int) -> Bool[np.ndarray, "h w"]:
-    grown: Bool[np.ndarray, "h w"] = cv2.dilate(cells.astype(np.uint8), np.ones((steps, steps), np.uint8)) > 0
-    return grown

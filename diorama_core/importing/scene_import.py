@@ -1,11 +1,16 @@
-"""A file as a scene whose shapes are at hand: those the library lacks are taken out of the file."""
+"""A file as a scene whose shapes are at hand: those the library lacks are taken out of the file.
+
+Reading is done here or in a process of its own, in which what crashes a reader, or unpacks to too much, ends in one
+line.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any, TypeVar
 
 from diorama_core.errors import LibraryError
 from diorama_core.importing.foreign import scene_of_parts, take_missing_shapes
@@ -15,12 +20,19 @@ from diorama_core.importing.measured_room import open_room
 from diorama_core.importing.measured_types import MeasuredRoom
 from diorama_core.importing.opening import Opened, open_marked
 from diorama_core.importing.point_cloud import PointCloud
+from diorama_core.io.limited import LimitedProcess
 from diorama_core.library.catalogue import base_id
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.store import StoredLibrary, list_libraries, open_library
 from diorama_core.library.user_library import OWN
 from diorama_core.progress import SILENT, Progress
 from diorama_core.project.storage import OWN_SHAPES
+
+MAX_MEMORY = 4_000_000_000
+"""Address space of the process: models, pictures, and what they are compared with."""
+MAX_QUIET_S = 90.0
+"""How long it may work on one part of a file."""
+R = TypeVar("R")
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +47,6 @@ class Imported:
 def import_scene(
     path: Path,
     shapes: Path | None = None,
-    *,
     library_name: str | None = None,
     unit_m: float | None = None,
     progress: Progress = SILENT,
@@ -72,15 +83,24 @@ def read_scene(path: Path, shapes: Path, known: frozenset[str], progress: Progre
         known: Ids of the shapes that the library has.
         progress: Where it is reported and cancelling is noticed.
 
-    Raises:
-        InputError: the file cannot be read.
-        UnavailableError: an optional library is missing.
-        LibraryError: models cannot be kept.
+    It raises as `import_scene`.
     """
     with _read(path, progress) as (place, content):
         if isinstance(content, MarkedFile):
             return _with_shapes(place, shapes, content, known, progress)
         return _open(place, content, shapes, "built-in", progress)
+
+
+def read_apart(read: Callable[..., R], path: Path, *more: Any, progress: Progress) -> R:
+    """What `import_scene` or `read_scene` makes of a file and all its further arguments, in a process of its own.
+
+    It raises the same, and `InputError` where that process had to end.
+    """
+    process = LimitedProcess(memory=MAX_MEMORY, seconds=MAX_QUIET_S)
+    try:
+        return process.work(path.name, read, path, *more, progress=progress)
+    finally:
+        process.close()
 
 
 @contextmanager

@@ -9,7 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
-from shapely.geometry import MultiPoint, MultiPolygon, Point, Polygon
+from shapely.geometry import MultiPoint, Point, Polygon
+from shapely.geometry.base import BaseGeometry
 from shapely.ops import polygonize, snap, unary_union
 
 from diorama_core.geometry.openings import HOME
@@ -38,6 +39,12 @@ class Storey:
     name: str = ""
 
 
+def largest_polygon(whole: BaseGeometry) -> Polygon | None:
+    """The largest piece of a shape; None where there is none."""
+    pieces = [p for p in getattr(whole, "geoms", [whole]) if isinstance(p, Polygon) and not p.is_empty]
+    return max(pieces, key=lambda p: p.area, default=None)
+
+
 def storeys_of(room: MeasuredRoom) -> tuple[Storey, ...]:
     """The floors of a room: as measured, or one that the walls enclose, or one around everything."""
     measured = [Storey(Polygon(f.outline), f.height_m, f.name) for f in room.floors]
@@ -62,9 +69,7 @@ def floor_planes(storeys: Sequence[Storey]) -> tuple[Plane, ...]:
 def rooms_of_floors(floors: Sequence[Plane], names: Mapping[str, str]) -> tuple[HomeRoom, ...]:
     """A room for each floor of a home; none where there is but one floor.
 
-    Args:
-        floors: of all storeys.
-        names: of rooms by the id of their floor; equal ones are numbered, and rooms without one, too.
+    Names are by the id of the floor; equal ones are numbered, and rooms without one, too.
     """
     if len(floors) < 2:
         return ()
@@ -167,8 +172,7 @@ def _outline(room: MeasuredRoom) -> Polygon | None:
             segments[index] = snap(segments[index], unary_union(segments[:index]), CORNER_M)
         rooms = list(polygonize(unary_union([s for s in segments if s.geom_type == "LineString"])))
         if rooms:
-            whole = unary_union(rooms)
-            return max(whole.geoms, key=lambda p: p.area) if isinstance(whole, MultiPolygon) else whole
+            return largest_polygon(unary_union(rooms))
     corners = [_corners(b)[:, :2] for b in room.boxes] + ends
     hull = MultiPoint(np.vstack(corners)).convex_hull if corners else None
     return hull if isinstance(hull, Polygon) else None

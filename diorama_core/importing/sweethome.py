@@ -23,7 +23,7 @@ from jaxtyping import Float
 
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.importing.part import Part
+from diorama_core.importing.parts import Part
 from diorama_core.io.bounded import shorten
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.io.text import parse_xml
@@ -34,6 +34,7 @@ from diorama_core.library.kinds import is_possible
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.schema import MAX_ITEMS
+from diorama_core.scene.types import yaw_rotation
 
 M_PER_CM = 0.01
 MODEL_TO_PART = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
@@ -49,10 +50,6 @@ MAX_FILES = 5000
 
 def parts_of_sweet_home(path: Path, progress: Progress = SILENT) -> tuple[tuple[Part, ...], tuple[str, ...]]:
     """Objects, walls and floors of a home, and notes about what is read otherwise than it is drawn.
-
-    Args:
-        path: The file.
-        progress: Told of each piece of furniture.
 
     Raises:
         InputError: it cannot be read, or holds more than a scene does.
@@ -171,7 +168,7 @@ def _piece(piece: ET.Element, files: ContainedFiles, level_m: float) -> Part:
     stretch[:3, 3] = -stretch[:3, :3] @ ((low + high) / 2)
     yaw = -_number(piece, "angle", 0.0)
     T = np.eye(4)
-    T[:2, :2] = [[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]]
+    T[:3, :3] = yaw_rotation(yaw)
     bottom = level_m + _number(piece, "elevation", 0.0) * M_PER_CM
     T[:3, 3] = [_number(piece, "x") * M_PER_CM, -_number(piece, "y") * M_PER_CM, bottom + sides[2] / 2]
     scene.apply_transform(T @ stretch)

@@ -76,9 +76,5 @@ def _scale(prim: Any, entry: Any) -> Float[np.ndarray, "3"]:
 
 
 def _parent_number(prim: Any, numbers: dict[Any, int]) -> int | None:
-    path = prim.GetPath().GetParentPath()
-    while not path.isEmpty:
-        if path in numbers:
-            return numbers[path]
-        path = path.GetParentPath()
-    return None
+    above = prim.GetPath().GetParentPath().GetAncestorsRange()
+    return next((numbers[path] for path in above if path in numbers), None)

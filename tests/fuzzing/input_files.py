@@ -15,7 +15,7 @@ from diorama_core.perception.inputs import read_inputs
 from diorama_core.perception.inputs.sorting import recognise
 from tests.fuzzing.mutate import Random, damaged, strange_json, strange_zip
 from tests.fuzzing.photo_readers import with_depth, with_masks
-from tests.perception.inputs.boxes.test_table import FORMS, SIZE, content
+from tests.perception.inputs.boxes.test_forms import FORMS, SIZE, content
 from tests.perception.inputs.depth.test_channels import in_bytes
 from tests.perception.inputs.files import encoded, npy
 from tests.perception.inputs.photos.test_kinds_of_photos import raw_file

@@ -153,7 +153,6 @@ def write_scan_of(path: Path, scene: Scene) -> Path:
         T = _upright(np.stack([wall.normal, along, [0.0, 0.0, 1.0]], axis=1), (low + high) / 2)
         wall_rows.append(_row({"wall": {}}, (np.ptp(wall.polygon @ along), high[2] - low[2], 0.0), T))
     floor = scene.architecture.floor
-    assert floor is not None
     corners = [[float(x), float(y), 0.0] for x, y in floor.polygon[:, :2]]
     rows: dict[str, list] = {"doors": [], "windows": [], "objects": []}
     for item in scene.objects:

@@ -9,27 +9,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from PIL import Image
-from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import InputError
 from diorama_core.export import export_scene
-from diorama_core.importing.depth_frames import FRAME_FORMS, cloud_of_frames
-from diorama_core.importing.forms import SCENE_FORMS, SUFFIXES, SceneParts, open_form, scan_in
+from diorama_core.importing.forms import SceneParts, open_form, scan_in
 from diorama_core.importing.measured_cloud import measure_cloud
-from diorama_core.importing.part import Part
-from diorama_core.importing.parts import join_flat_parts
-from diorama_core.importing.point_cloud import PointCloud
+from diorama_core.importing.parts import Part, join_flat_parts
+from diorama_core.importing.point_cloud import PointCloud, frame_of_scene, likely_up
 from diorama_core.importing.point_files import is_text_cloud, read_points, read_splat_ply
-from diorama_core.importing.room import room_of
-from diorama_core.importing.room_by_shape import shell_planes, slab_role
-from diorama_core.importing.scene_frame import frame_of_scene, likely_up
-from diorama_core.io.file_heads import head_of
+from diorama_core.importing.room import room_of, shell_planes, slab_role
 from diorama_core.library.ingest.models import read_model
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Plane
 from tests.importing.roomplan_files import write_json
-from tests.importing.scans import DEPTH, HEIGHT, WIDTH, cameras, room_meshes, room_points, write_app_scan
+from tests.importing.scans import DEPTH, WIDTH, room_meshes, room_points, write_app_scan
+from tests.importing.stages import write_stage
 from tests.primitives import PrimitiveLibrary, furnished_room
 
 
@@ -101,9 +95,7 @@ def noisy_scan() -> trimesh.Trimesh:
 
 def test_a_scan_as_a_mesh_is_points_and_a_modelled_room_is_not() -> None:
     cloud = scan_in([part("mesh_0", noisy_scan())])
-    assert cloud is not None
-    outline = measure_cloud(cloud).floor
-    assert outline is not None
+    outline = measure_cloud(cloud).floors[0].outline
     assert sorted(np.ptp(outline, axis=0)) == pytest.approx([DEPTH, WIDTH], abs=0.04)
     assert scan_in([part(name, mesh) for name, mesh in room_parts().items()]) is None
     assert scan_in([]) is None
@@ -139,30 +131,6 @@ def test_points_in_plain_text_are_read(tmp_path: Path, suffix: str, first: str, 
     path.write_text(first + "\n".join(lines) + "\n")
     assert read_points(path).points == pytest.approx(points, abs=1e-3)
     assert not is_text_cloud("some words\nand more\nand more\n")
-
-
-def write_tum(folder: Path) -> Path:
-    """A folder of Polycam's frames rewritten as TUM RGB-D keeps them."""
-    write_app_scan(folder / "p", "polycam")
-    (folder / "t" / "depth").mkdir(parents=True)
-    listed, poses = [], []
-    for number, (camera, path) in enumerate(zip(cameras(), sorted((folder / "p").rglob("depth/*.png")), strict=True)):
-        depth = np.asarray(Image.open(path)).astype(np.int64) * 5
-        Image.fromarray(depth.astype(np.uint16)).save(folder / "t" / "depth" / f"{number}.png")
-        listed.append(f"{number}.0 depth/{number}.png")
-        q = Rotation.from_matrix(camera.T_world_camera[:3, :3]).as_quat()
-        poses.append(" ".join(f"{v:.6f}" for v in (number + 0.01, *camera.T_world_camera[:3, 3], *q)))
-    (folder / "t" / "depth.txt").write_text("# depth\n" + "\n".join(listed))
-    (folder / "t" / "groundtruth.txt").write_text("# poses\n" + "\n".join(poses))
-    return folder / "t"
-
-
-def test_depth_of_tum_is_in_fifths_of_a_millimetre(tmp_path: Path) -> None:
-    folder = write_tum(tmp_path)
-    form = next(f for f in FRAME_FORMS if f.tells(head_of(folder)))
-    assert form.name == "TUM RGB-D"
-    cloud = cloud_of_frames(folder, form)
-    assert np.ptp(np.quantile(cloud.points, [0.01, 0.99], axis=0), axis=0)[2] == pytest.approx(HEIGHT, abs=0.3)
 
 
 def test_polycams_frames_are_read_from_their_zip_and_as_the_folder_keyframes(tmp_path: Path) -> None:
@@ -207,31 +175,7 @@ def test_an_obj_of_a_room_is_put_upright_and_in_metres(tmp_path: Path) -> None:
     assert any("centimetres" in note for note in notes)
 
 
-def test_the_table_has_names_and_endings() -> None:
-    assert {".glb", ".usdz", ".sh3d", ".json", ".ply", ".xyz", ".pcd", ".zip"} <= set(SUFFIXES)
-    assert all(form.name and form.files and form.becomes for form in SCENE_FORMS)
-    assert PointCloud(np.zeros((1, 3)), None).notes == ()
-
-
 UNIT_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "foot": 0.3048}
-
-
-def stage_of(path: Path, meshes: dict[str, trimesh.Trimesh]) -> None:
-    """Meshes in a stage that calls its lengths metres."""
-    pxr = pytest.importorskip("pxr", reason="usd-core is not installed (optional extra 'usd')")
-    from pxr import Usd, UsdGeom
-
-    assert pxr is not None
-    stage = Usd.Stage.CreateNew(str(path))
-    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
-    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
-    stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/World").GetPrim())
-    for name, mesh in meshes.items():
-        prim = UsdGeom.Mesh.Define(stage, f"/World/{name}")
-        prim.CreatePointsAttr(mesh.vertices.tolist())
-        prim.CreateFaceVertexCountsAttr([3] * len(mesh.faces))
-        prim.CreateFaceVertexIndicesAttr(mesh.faces.reshape(-1).tolist())
-    stage.Save()
 
 
 @pytest.mark.parametrize("unit", UNIT_M)
@@ -247,7 +191,8 @@ def test_a_given_unit_is_believed(suffix: str, unit: str, tmp_path: Path) -> Non
         whole = trimesh.util.concatenate(list(room_parts().values()))
         expected = 2.0 * whole.extents
         if suffix in (".usda", ".usdc"):
-            stage_of(path, meshes)
+            pytest.importorskip("pxr", reason="usd-core is not installed (optional extra 'usd')")
+            write_stage(path, meshes)
         elif suffix == ".ply":
             whole.apply_scale(factor).export(path)
         else:

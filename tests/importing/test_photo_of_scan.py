@@ -91,7 +91,6 @@ def test_looks_and_kinds_come_from_the_photo_and_boxes_stay(tmp_path: Path) -> N
     assert not any(o.colour is not None or o.photo_materials for o in before.objects)
     assert len(after.objects) > len(before.objects), "what RoomPlan has no word for comes from the photo"
     assert floor.texture in found.textures
-    assert found.inputs is not None
     assert len(found.inputs.boxes) == len(marked)
 
 

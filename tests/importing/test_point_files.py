@@ -52,7 +52,7 @@ def test_a_ply_in_centimetres_is_brought_to_metres_and_says_so(tmp_path: Path, m
     cloud = read_points(path)
     assert any("taken for centimetres" in note for note in cloud.notes)
     room = measure_cloud(cloud)
-    assert Polygon(room.floor).area == pytest.approx(AREA, rel=0.02)
+    assert Polygon(room.floors[0].outline).area == pytest.approx(AREA, rel=0.02)
     assert len(room.boxes) == len(FURNITURE)
 
 
@@ -68,7 +68,7 @@ def test_las_and_laz_are_read(tmp_path: Path, suffix: str) -> None:
     cloud = read_points(tmp_path / f"room{suffix}")
     assert len(cloud.points) == len(points)
     assert np.abs(cloud.points[:, :2]).max() < 10.0
-    assert Polygon(measure_cloud(cloud).floor).area == pytest.approx(AREA, rel=0.02)
+    assert Polygon(measure_cloud(cloud).floors[0].outline).area == pytest.approx(AREA, rel=0.02)
 
 
 def test_e57_scans_are_joined_in_their_common_frame(tmp_path: Path) -> None:
@@ -82,14 +82,14 @@ def test_e57_scans_are_joined_in_their_common_frame(tmp_path: Path) -> None:
     made.close()
     cloud = read_points(tmp_path / "room.e57")
     assert len(cloud.points) == len(points)
-    assert Polygon(measure_cloud(cloud).floor).area == pytest.approx(AREA, rel=0.02)
+    assert Polygon(measure_cloud(cloud).floors[0].outline).area == pytest.approx(AREA, rel=0.02)
 
 
 @pytest.mark.parametrize("app", ["polycam", "3d scanner app"])
 def test_depth_of_scanner_apps_counts_where_it_is_sure(tmp_path: Path, app: str) -> None:
     folder = write_app_scan(tmp_path / "scan", app)
     room = measure_cloud(read_points(folder))
-    assert Polygon(room.floor).area == pytest.approx(AREA, rel=0.03)
+    assert Polygon(room.floors[0].outline).area == pytest.approx(AREA, rel=0.03)
     assert len(room.walls) == 4
     assert len(room.boxes) == len(FURNITURE)  # unsure depth would be dust in the air
     assert any("20 frames" in note for note in room.notes)
@@ -101,7 +101,7 @@ def test_without_depth_the_mesh_of_the_folder_is_taken(tmp_path: Path) -> None:
     (tmp_path / "scan").mkdir()
     whole.export(tmp_path / "scan" / "raw.glb")
     cloud = read_points(tmp_path / "scan")
-    assert Polygon(measure_cloud(cloud).floor).area == pytest.approx(AREA, rel=0.02)
+    assert Polygon(measure_cloud(cloud).floors[0].outline).area == pytest.approx(AREA, rel=0.02)
 
 
 def test_what_cannot_be_read_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

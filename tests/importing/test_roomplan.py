@@ -124,7 +124,6 @@ def test_a_front_that_looks_into_its_wall_is_turned_round(tmp_path: Path) -> Non
 def test_walls_enclose_the_floor_where_the_file_has_none(tmp_path: Path) -> None:
     scene = import_scene(write_json(tmp_path / "room.json", floors=False)).opened.scene
     floor = scene.architecture.floor
-    assert floor is not None
     assert Polygon(turned(CORNERS)).symmetric_difference(Polygon(floor.polygon[:, :2])).area < 0.01
     assert floor.polygon[0, 2] == pytest.approx(FLOOR_M)
 
@@ -149,7 +148,6 @@ def test_a_wall_cabinet_hangs_and_attributes_name_kinds(tmp_path: Path) -> None:
     cabinet, table = opened.scene.objects[:2]
     assert cabinet.category in with_kin("wall cabinet", "shelves")
     edge = opened.scene.support_of(cabinet.id)
-    assert edge is not None
     assert edge.relation == "mounted on"
     assert table.category == "coffee table"
     assert any("unsure of 1 of 2" in line for line in opened.changes)
@@ -179,7 +177,6 @@ def test_what_makes_no_sense_is_one_line(tmp_path: Path, change, words: str) -> 
 def test_an_empty_scan_is_an_empty_room(tmp_path: Path) -> None:
     (tmp_path / "room.json").write_text('{"walls": []}')
     room = read_room_plan(tmp_path / "room.json")
-    assert room is not None
     scene = open_room(room, built_in_library()).scene
     assert (scene.objects, scene.architecture.planes) == ((), ())
 

@@ -83,10 +83,8 @@ def scanned(category: str, turn: float = 0.0, number: int = 1) -> MeasuredBox:
 def test_the_own_kind_is_nearest_to_the_points(category: str, others: tuple[str, ...]) -> None:
     surface = ScannedSurface.of(scanned(category, turn=0.7))
     own = surface.misfit_of_kind(category, LIBRARY)
-    assert own is not None
     for other in others:
         misfit = surface.misfit_of_kind(other, LIBRARY)
-        assert misfit is not None
         assert own < misfit - 0.01
 
 

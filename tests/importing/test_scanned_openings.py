@@ -63,22 +63,19 @@ def test_a_hole_that_reaches_the_floor_is_a_door_and_one_above_it_a_window() -> 
     assert near(window, "window", WINDOW)
 
 
-def test_bars_do_not_divide_a_window_and_its_frame_is_of_it() -> None:
-    panes = [(2.3, 1.0, 2.78, 1.9), (2.82, 1.0, 3.3, 1.9)]
-    (window,) = found(surface(panes, [(WINDOW, 0.03)]))
-    assert near(window, "window", WINDOW)
+GLAZED = (0.62, 0.3, 1.28, 1.9)
+PANES = [(2.3, 1.0, 2.78, 1.9), (2.82, 1.0, 3.3, 1.9)]
 
 
-@pytest.mark.parametrize("out", [0.03, -0.04])
-def test_a_shut_door_is_a_leaf_at_another_depth_than_the_wall(out: float) -> None:
-    (door,) = found(surface(leaves=[(DOORWAY, out)]))
-    assert near(door, "door", DOORWAY)
-
-
-def test_a_glazed_door_is_one_door() -> None:
-    panes = [(0.62, 0.3, 1.28, 1.9)]
-    (door,) = found(surface(panes, [(DOORWAY, 0.03)]))
-    assert near(door, "door", DOORWAY)
+@pytest.mark.parametrize(
+    ("holes", "leaf", "out", "kind"),
+    [(PANES, WINDOW, 0.03, "window"), ((), DOORWAY, 0.03, "door"), ((), DOORWAY, -0.04, "door"),
+     ([GLAZED], DOORWAY, 0.03, "door")],
+    ids=["a window with bars and a frame", "a shut door that stands out", "or is set in", "a glazed door"],
+)  # fmt: skip
+def test_a_leaf_or_frame_at_another_depth_than_the_wall_is_of_one_opening(holes, leaf, out: float, kind: str) -> None:
+    (opening,) = found(surface(holes, [(leaf, out)]))
+    assert near(opening, kind, leaf)
 
 
 def test_a_picture_on_a_whole_wall_is_no_opening() -> None:

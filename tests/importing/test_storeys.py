@@ -62,7 +62,6 @@ def test_without_floors_the_walls_enclose_one() -> None:
     room = MeasuredRoom(tuple(walls(ring(0, 0), 0.5, 3.0, "w")), ())
     (storey,) = storeys_of(room)
     assert storey.height_m == 0.5
-    assert storey.outline is not None
     assert storey.outline.area == pytest.approx(9.0)
     assert floor_planes((storey,))[0].centre[2] == pytest.approx(0.5)
     assert floors_below([bed(1.0, 1.0, 0.5)], (storey,)) == [0]

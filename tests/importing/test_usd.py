@@ -6,21 +6,25 @@ import numpy as np
 import pytest
 import trimesh
 
+pytest.importorskip("pxr", reason="needs the extra [usd]")
+
+from pxr import Gf, Sdf, Usd, UsdGeom
+
 from diorama_core.errors import InputError
 from diorama_core.export import export_scene
-from diorama_core.importing.restore import restore
+from diorama_core.importing.opening import open_marked
+from diorama_core.importing.parts import parts_of_usd
 from diorama_core.importing.scene_import import import_scene
 from diorama_core.importing.usd import read_marked_usd
+from diorama_core.library.ingest.usd_meshes import _fans
+from tests.importing.stages import write_stage
 from tests.importing.test_gltf import LIBRARY, edited_room
 from tests.primitives import furnished_room
-
-pxr = pytest.importorskip("pxr", reason="needs the extra [usd]")
 
 
 def back(path):
     marked = read_marked_usd(path)
-    assert marked is not None
-    return restore(marked)
+    return open_marked(marked)
 
 
 @pytest.mark.parametrize("kind", ["usda", "usdc", "usdz"])
@@ -33,8 +37,6 @@ def test_an_untouched_file_gives_the_same_scene(tmp_path, kind: str) -> None:
 
 
 def test_moved_and_deleted_prims(tmp_path) -> None:
-    from pxr import Gf, Usd, UsdGeom
-
     scene = furnished_room(LIBRARY)
     path = tmp_path / "room.usda"
     export_scene(scene, LIBRARY, path, "usda")
@@ -51,8 +53,6 @@ def test_moved_and_deleted_prims(tmp_path) -> None:
 
 def test_another_unit_and_up_axis(tmp_path) -> None:
     """A stage in centimetres with +Y up, as other programs write it, gives the same places."""
-    from pxr import Gf, Usd, UsdGeom
-
     scene = furnished_room(LIBRARY)
     path = tmp_path / "room.usda"
     export_scene(scene, LIBRARY, path, "usda")
@@ -68,20 +68,9 @@ def test_another_unit_and_up_axis(tmp_path) -> None:
 
 
 def test_centimetres_that_a_stage_calls_metres_are_said_and_read(tmp_path) -> None:
-    from pxr import Gf, Usd, UsdGeom
-
-    stage = Usd.Stage.CreateNew(str(tmp_path / "room.usda"))
-    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
-    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
-    stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/World").GetPrim())
-    for name, place, size in (("floor", (0, 0, -5), (500, 400, 10)), ("table", (50, 0, 37), (120, 80, 74))):
-        box = trimesh.creation.box(size)
-        mesh = UsdGeom.Mesh.Define(stage, f"/World/{name}")
-        mesh.AddTranslateOp().Set(Gf.Vec3d(*place))
-        mesh.CreatePointsAttr(box.vertices.tolist())
-        mesh.CreateFaceVertexCountsAttr([3] * len(box.faces))
-        mesh.CreateFaceVertexIndicesAttr(box.faces.reshape(-1).tolist())
-    stage.Save()
+    boxes = {"floor": ((500, 400, 10), (0, 0, -5)), "table": ((120, 80, 74), (50, 0, 37))}
+    meshes = {name: trimesh.creation.box(size).apply_translation(place) for name, (size, place) in boxes.items()}
+    write_stage(tmp_path / "room.usda", meshes)
     found = import_scene(tmp_path / "room.usda", tmp_path / "shapes").opened
     (table,) = found.scene.objects
     np.testing.assert_allclose(sorted(table.size_m), [0.74, 0.8, 1.2], atol=1e-6)
@@ -90,8 +79,6 @@ def test_centimetres_that_a_stage_calls_metres_are_said_and_read(tmp_path) -> No
 
 def test_blender_keeps_the_scene(tmp_path) -> None:
     """Blender writes everything below a root of its own, numbers names, and forgets custom data."""
-    from pxr import Sdf, Usd
-
     scene = furnished_room(LIBRARY)
     export_scene(scene, LIBRARY, tmp_path / "room.usda", "usda")
     written = Usd.Stage.Open(str(tmp_path / "room.usda")).Flatten()
@@ -114,8 +101,6 @@ def test_blender_keeps_the_scene(tmp_path) -> None:
 
 
 def test_foreign_and_broken_files(tmp_path) -> None:
-    from pxr import Usd, UsdGeom
-
     stage = Usd.Stage.CreateNew(str(tmp_path / "foreign.usda"))
     stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/World").GetPrim())
     stage.Save()
@@ -128,8 +113,6 @@ def test_foreign_and_broken_files(tmp_path) -> None:
 
 
 def test_layers_are_read_beside_the_file_only(tmp_path) -> None:
-    from pxr import Sdf
-
     folder = tmp_path / "received"
     folder.mkdir()
     for place in (tmp_path / "secret.usda", folder / "chair.usda"):
@@ -145,10 +128,6 @@ def test_layers_are_read_beside_the_file_only(tmp_path) -> None:
 
 
 def test_values_that_make_no_sense_are_one_line(tmp_path) -> None:
-    from pxr import Usd, UsdGeom
-
-    from diorama_core.importing.parts import parts_of_usd
-
     for number, (points, corners) in enumerate(
         [
             ([(0, 0, 0), (1, 0, 0), (0, 1, float("inf"))], [0, 1, 2]),
@@ -168,18 +147,12 @@ def test_values_that_make_no_sense_are_one_line(tmp_path) -> None:
 
 
 def test_polygons_become_fans() -> None:
-    from diorama_core.library.ingest.usd_meshes import _fans
-
     found = _fans(np.array([3, 5, 2, 4]), np.arange(14))
     assert found.tolist() == [[0, 1, 2], [3, 4, 5], [3, 5, 6], [3, 6, 7], [10, 11, 12], [10, 12, 13]]
 
 
 def test_copies_of_copies_are_counted_before_they_fill_the_memory(tmp_path) -> None:
     """A small file whose instances hold instances: ten to the seventh meshes."""
-    from pxr import Usd, UsdGeom
-
-    from diorama_core.importing.parts import parts_of_usd
-
     path = tmp_path / "bomb.usda"
     stage = Usd.Stage.CreateNew(str(path))
     mesh = UsdGeom.Mesh.Define(stage, "/Level0/mesh")

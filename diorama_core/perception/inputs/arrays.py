@@ -1,15 +1,19 @@
-"""Arrays and lists in memory as the files that `read_inputs` checks, so that both are read in one place."""
+"""Arrays and lists in memory as the files that `read_inputs` checks, so that both are read in one place, and what a
+file of an array promises.
+"""
 
 from __future__ import annotations
 
 import io
 import json
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from jaxtyping import Float, Int, UInt8
+from numpy.lib import format as npy
 from PIL import Image
 
 from diorama_core.errors import InputError
@@ -63,6 +67,21 @@ def boxes_file(boxes: Path | str | bytes | Boxes | None) -> Path | bytes | None:
 
 def _file(given: Path | str | bytes) -> Path | bytes:
     return Path(given) if isinstance(given, str) else given
+
+
+def array_header(stream: IO[bytes] | io.BytesIO, most: float = math.inf) -> tuple[tuple[int, ...], np.dtype]:
+    """Shape and type of an array whose header promises no more than so many bytes; the stream is where it was.
+
+    Raises:
+        ValueError: the header is damaged, or promises more.
+    """
+    version = npy.read_magic(stream)
+    shape, _, dtype = npy.read_array_header_1_0(stream) if version == (1, 0) else npy.read_array_header_2_0(stream)
+    stream.seek(0)
+    size = math.inf if dtype.hasobject else float(np.prod(shape, dtype=float)) * dtype.itemsize
+    if any(n < 0 for n in shape) or size > most:
+        raise ValueError("its header promises too much")
+    return shape, dtype
 
 
 def _plain(value: object) -> object:

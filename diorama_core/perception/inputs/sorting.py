@@ -9,15 +9,14 @@ import numpy as np
 from PIL import Image
 
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parse_box_text
+from diorama_core.perception.inputs.boxes.reading import BOX_FORMS, parse_box_text
 from diorama_core.perception.inputs.depth.channels import depth_of_colours
 from diorama_core.perception.inputs.depth.confidence import is_confidence
 from diorama_core.perception.inputs.depth.containers import DEPTH_FORMS
 from diorama_core.perception.inputs.depth.numpy_files import DepthContent
 from diorama_core.perception.inputs.masks.pictures import white_on_black
-from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture, what_it_is
+from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture, raw_kind, what_it_is
 from diorama_core.perception.inputs.photos.frame import ASPECT_TOLERANCE
-from diorama_core.perception.inputs.photos.raw import raw_kind
 from diorama_core.perception.inputs.source import Source, form_of
 
 Sort = Literal["photo", "boxes", "masks", "depth", "confidence"]
@@ -39,10 +38,7 @@ class Recognised:
 def recognise(content: bytes, name: str, photo_size: tuple[int, int] | None) -> tuple[Recognised, ...]:
     """What a file may be, likeliest first; several where its content leaves that open.
 
-    Args:
-        content: of the file.
-        name: of the file.
-        photo_size: of the photo that is open, where there is one.
+    `photo_size` is that of the photo that is open, where there is one.
 
     Raises:
         InputError: nothing that is read.
@@ -52,8 +48,7 @@ def recognise(content: bytes, name: str, photo_size: tuple[int, int] | None) -> 
         return (Recognised("confidence", "confidence of depth"),)
     if content.startswith((b"\x93NUMPY", b"PK\x03\x04")):
         return _recognise_array(source, photo_size)
-    kind = raw_kind(content)
-    if kind is not None:
+    if raw_kind(content) is not None:
         return (Recognised("photo", "a camera's raw photo"),)
     picture = _picture(source)
     if picture is not None:
@@ -106,10 +101,10 @@ def _recognise_picture(
         return (Recognised("masks", "a picture of masks"),)
     if pixels[:, 3].min() < 128:
         return Recognised("masks", "one object cut out of the photo"), photo
+    grey = bool((pixels[:, :3] == pixels[:, :1]).all())
     if picture.mode == "RGB" and picture.format == "PNG" and depth_of_colours(np.asarray(picture)) is not None:
         packed = Recognised("depth", "a depth map packed in colours")
-        return (photo, packed) if bool((pixels[:, :3] == pixels[:, :1]).all()) else (packed, photo)
-    grey = bool((pixels[:, :3] == pixels[:, :1]).all())
+        return (photo, packed) if grey else (packed, photo)
     return (photo, Recognised("depth", "a depth map of 8 bits")) if grey else (photo,)
 
 

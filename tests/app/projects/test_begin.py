@@ -81,7 +81,7 @@ def test_described_and_opened_scenes_that_would_not_open_are_no_projects(
     monkeypatch.setattr(
         scene_from_text, "scene_from_text", lambda said, library, **_: scene_from_text.SceneFromText(scene, {}, ("",))
     )
-    monkeypatch.setattr(opening_job, "read_apart", lambda *_: Opened(scene))
+    monkeypatch.setattr(opening_job, "read_apart", lambda *_, **__: Opened(scene))
     before = sorted(session.projects_dir.iterdir())
     for begin in (lambda: describe_room(client, "a room"), lambda: opening_job.open_file(client, "room.glb", b"")):
         begin()

@@ -15,7 +15,6 @@ from tests.perception.inputs.files import HEIGHT, WIDTH, box, boxes_json, encode
 class TestIntrinsics:
     def test_field_of_view(self) -> None:
         camera = read_inputs(encoded(picture()), fov_deg=90.0).inputs.intrinsics
-        assert camera is not None
         assert camera.fx == pytest.approx(WIDTH / 2)
         assert camera.horizontal_fov_rad == pytest.approx(np.pi / 2)
 
@@ -41,7 +40,6 @@ def test_what_is_upside_down_is_turned_with_all_that_belongs_to_it() -> None:
     assert (turned.photo.rgb == plain.photo.rgb[::-1, ::-1]).all()
     assert (turned.photo.half_turned, plain.photo.half_turned) == (True, None)
     assert turned.boxes[0].box == (WIDTH - 40, HEIGHT - 30, WIDTH - 10, HEIGHT - 6)
-    assert turned.instances is not None
     assert (turned.instances == plain.instances[::-1, ::-1]).all()
     assert (turned.intrinsics.cx, turned.intrinsics.cy) == (WIDTH - 40.0, HEIGHT - 30.0)
     above = read_inputs(encoded(picture()), half_turn=True, depth=npy(depth), depth_kind="depth", depth_scale=1.0)

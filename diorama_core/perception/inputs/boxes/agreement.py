@@ -33,7 +33,8 @@ class EdgeMap:
         self._scale = np.array([size[0] / rgb.shape[1], size[1] / rgb.shape[0]])
         self._slack = max(1, round(SLACK_SHARE * max(size)))
         # The fourth root tempers strong edges: that a side lies on one counts more than how strong it is.
-        self._across, self._along = (np.cumsum(_pad_first_row(np.sqrt(np.sqrt(m))), axis=0) for m in (across, along.T))
+        tempered = (np.sqrt(np.sqrt(m)) for m in (across, along.T))
+        self._across, self._along = (np.cumsum(np.pad(m, ((1, 0), (0, 0))), axis=0) for m in tempered)
 
     def agreement(self, boxes: Sequence[Corners]) -> float:
         """The mean strength of edges under the sides of boxes, over that of such lines anywhere; 1 says nothing."""
@@ -61,11 +62,6 @@ class EdgeMap:
         return float(windows[column] / windows.mean())
 
 
-def _pad_first_row(edges: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h2 w"]:
-    """The map with an empty first row, so that sums of rows are differences."""
-    return np.concatenate([np.zeros((1, edges.shape[1])), edges])
-
-
 _USUAL = {"ceiling": (0.18, 0.14), "wall": (0.38, 0.15), "floor": (0.64, 0.14), "rug": (0.8, 0.12)}
 """Mean and deviation of the height in the picture (0 top, 1 bottom) of the middle of what is so held."""
 CERTAIN = 6.0
@@ -73,12 +69,7 @@ CERTAIN = 6.0
 
 
 def is_upside_down(boxes: Sequence[LabelledBox], height: int) -> bool:
-    """Whether things lie in the picture as they do in one that was turned by 180 degrees.
-
-    Args:
-        boxes: with names; those without say nothing.
-        height: of the photo, pixels.
-    """
+    """Whether things lie as in a picture that was turned by 180 degrees; boxes without names say nothing."""
     ratio = 0.0
     for box in boxes:
         if box.category == UNKNOWN.name:

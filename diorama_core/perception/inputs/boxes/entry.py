@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import shorten
@@ -53,44 +53,48 @@ class BoxText:
     """The content of a file, parsed as far as its container goes."""
 
     source: Source
-    document: object
+    document: Any
     """A JSON value, an XML root element, or the lines of a text."""
     photo_name: str
     photo_size: Size
     """Size of the upright original."""
 
 
-def is_of(name: object, photo_name: str) -> bool:
-    """Whether a picture that a file names is the photo: folders, endings, and what Roboflow and Label Studio add to
-    names apart."""
-    return _plain(str(name)) == _plain(photo_name)
+def picture_of(pictures: Iterable[tuple[object, T]], text: BoxText, what: str) -> T:
+    """Picks of a file's pictures, each with its name, the one that is the photo; the only one where there is one.
 
-
-def picture_of(pictures: Sequence[T], names: Sequence[object], text: BoxText, what: str) -> T:
-    """Picks the picture of a file that is the photo; the only one where there is one.
-
-    Args:
-        pictures: what the file says of each.
-        names: of them, as the file has them.
-        text: the file.
-        what: it is, for people.
+    Folders, endings, and what Roboflow and Label Studio add to names do not count.
 
     Raises:
         InputError: none of several is called like the photo, or more than one.
     """
-    matches = [p for p, name in zip(pictures, names, strict=True) if len(pictures) == 1 or is_of(name, text.photo_name)]
+    named, photo = list(pictures), _plain(text.photo_name)
+    matches = [picture for name, picture in named if len(named) == 1 or _plain(str(name)) == photo]
     if len(matches) != 1:
         raise InputError(
-            f"{text.source.name}: this {what} is of {len(pictures)} pictures, none of them called "
+            f"{text.source.name}: this {what} is of {len(named)} pictures, none of them called "
             f"{shorten(text.photo_name, 60)}; keep the annotations of this photo"
         )
     return matches[0]
+
+
+def rows_of_picture(rows: Iterable[tuple[object, T]], text: BoxText, what: str) -> list[T]:
+    """The rows of the photo, where each has the name of its picture; raises as `picture_of`."""
+    by_name: dict[object, list[T]] = {}
+    for name, row in rows:
+        by_name.setdefault(name, []).append(row)
+    return picture_of(by_name.items(), text, what)
 
 
 def _plain(name: str) -> str:
     stem = re.split(r"[/\\]", name)[-1].rsplit(".", 1)[0].lower()
     stem = re.sub(r"\.rf\.[0-9a-z]+$", "", stem)  # Roboflow: room_jpg.rf.0a1b2c
     return re.sub(r"_(jpe?g|png|webp|bmp|tiff?)$", "", re.sub(r"^[0-9a-f]{8}-", "", stem))
+
+
+def entries_of(boxes: Iterable[tuple[Corners | None, str, float]]) -> tuple[BoxEntry, ...]:
+    """Entries of corners, words and scores, where there are corners."""
+    return tuple(BoxEntry(corners, word, score) for corners, word, score in boxes if corners is not None)
 
 
 def from_layout(numbers: Corners, layout: Layout) -> Corners:

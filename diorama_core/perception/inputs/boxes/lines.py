@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Sequence
 from typing import Any
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import parse_json
-from diorama_core.perception.inputs.boxes.dictionaries import box_numbers, box_of, numbers, score_of, word_of
 from diorama_core.perception.inputs.boxes.entry import (
     UNNAMED,
     BoxEntry,
@@ -16,10 +16,19 @@ from diorama_core.perception.inputs.boxes.entry import (
     BoxText,
     Corners,
     Layout,
+    entries_of,
     from_layout,
-    picture_of,
+    rows_of_picture,
 )
-from diorama_core.perception.inputs.boxes.nested import PICTURE_FILE, size_in
+from diorama_core.perception.inputs.boxes.nested import (
+    PICTURE_FILE,
+    box_numbers,
+    box_of,
+    numbers,
+    score_of,
+    size_in,
+    word_of,
+)
 from diorama_core.perception.inputs.source import Source
 
 _NAME_FILES = (
@@ -43,7 +52,7 @@ def is_yolo(text: BoxText) -> bool:
 
 def read_yolo(text: BoxText) -> BoxFile:
     """Boxes in shares of the picture, with the names of the list of classes beside the file."""
-    entries, names = [], _class_names(text.source)
+    boxes, names = [], _class_names(text.source)
     for index, row in enumerate(_rows(text)):
         values = [float(v) for v in row[1:]]
         where = f"{text.source.name}: line {index + 1}"
@@ -53,15 +62,15 @@ def read_yolo(text: BoxText) -> BoxFile:
             corners = from_layout(numbers(values[:4], where), "centred")
         score = values[4] if len(values) == 5 else 1.0
         word = names.get(int(float(row[0])), UNNAMED)
-        entries += [] if corners is None else [BoxEntry(corners, word, min(max(score, 0.0), 1.0))]
+        boxes.append((corners, word, min(max(score, 0.0), 1.0)))
     note = f"{text.source.name} is in YOLO's form; its class numbers need their names: put classes.txt beside it"
-    return BoxFile(tuple(entries), unit="shares", notes=() if names else (note,))
+    return BoxFile(entries_of(boxes), unit="shares", notes=() if names else (note,))
 
 
 def is_table(text: BoxText) -> bool:
     """A header that names the columns of a box, and rows under it."""
     rows = _table(text)
-    return bool(rows) and any(box is not None for box in (_table_box(r) for r in rows[:1]))
+    return bool(rows) and _table_box(rows[0]) is not None
 
 
 def read_table(text: BoxText) -> BoxFile:
@@ -69,15 +78,11 @@ def read_table(text: BoxText) -> BoxFile:
     rows = _table(text)
     pictures = next((k for k in rows[0] if re.fullmatch(_PICTURE_COLUMN, k.lower())), None)
     if pictures is not None:
-        by_name: dict[str, list[dict[str, str]]] = {}
-        for row in rows:
-            by_name.setdefault(row[pictures], []).append(row)
-        rows = picture_of(list(by_name.values()), list(by_name), text, "table")
+        rows = rows_of_picture(((row[pictures], row) for row in rows), text, "table")
     entries = []
     for index, row in enumerate(rows):
-        box = _table_box(row)
-        values = numbers([0] if box is None else box[0], f"{text.source.name}: row {index + 1}")
-        corners = from_layout(values, box[1] if box is not None else "corners")
+        values, layout = _table_box(row) or ((0,), "corners")
+        corners = from_layout(numbers(values, f"{text.source.name}: row {index + 1}"), layout)
         entries.append(BoxEntry(corners, word_of({**row, **_values_in(row)}), score_of(_values_in(row))))
     # The width of a picture is a column of its own only where the box has corners.
     size = size_in(_values_in(rows[0])) if rows and "xmin" in "".join(rows[0]).lower() else None
@@ -92,7 +97,7 @@ def is_words(text: BoxText) -> bool:
 
 def read_words(text: BoxText) -> BoxFile:
     """A word, perhaps a score, and four numbers a line."""
-    by_name: dict[str, list[BoxEntry]] = {}
+    named: list[tuple[str, tuple[Corners | None, str, float]]] = []
     for index, row in enumerate(_rows(text)):
         pair, where = _split_words(row), f"{text.source.name}: line {index + 1}"
         if pair is None:
@@ -101,9 +106,8 @@ def read_words(text: BoxText) -> BoxFile:
         picture = next((w for w in words if PICTURE_FILE.search(w)), "")
         word = " ".join(w for w in words if w != picture and w not in _PARTS) or UNNAMED
         corners = box_of({"points": [float(v) for v in values]}, where) if len(values) == 8 else numbers(values, where)
-        by_name.setdefault(picture, []).extend([] if corners is None else [BoxEntry(corners, word)])
-    entries = picture_of(list(by_name.values()), list(by_name), text, "list")
-    return BoxFile(tuple(entries), ambiguous_layout=True)
+        named.append((picture, (corners, word, 1.0)))
+    return BoxFile(entries_of(rows_of_picture(named, text, "list")), ambiguous_layout=True)
 
 
 def _rows(text: BoxText) -> list[list[str]]:
@@ -125,15 +129,10 @@ def _is_yolo_row(row: list[str]) -> bool:
 
 def _split_words(row: list[str]) -> tuple[list[str], list[str]] | None:
     """The words and the four numbers of a line, or the eight of four corners."""
-    if (
-        len(row) in (_KITTI_WORDS, _KITTI_WORDS + 1)
-        and _number(row[0]) is None
-        and all(_number(v) is not None for v in row[1:])
-    ):
-        return row[:1], row[4:8]
     values = [v for v in row if _number(v) is not None]
-    words = [v for v in row if _number(v) is None]
-    words = [w.strip("\"'") for w in words]
+    words = [v.strip("\"'") for v in row if _number(v) is None]
+    if len(row) in (_KITTI_WORDS, _KITTI_WORDS + 1) and len(words) == 1 and _number(row[0]) is None:
+        return row[:1], row[4:8]
     if words and len(values) in (8, 9) and all(_number(v) is not None for v in row[:8]):
         return words, values[:8]  # DOTA's
     if not words or len(values) not in (4, 5):
@@ -153,13 +152,12 @@ def _table(text: BoxText) -> list[dict[str, str]]:
         return []
 
 
-def _table_box(row: dict[str, str]) -> tuple[list[float], Layout] | None:
-    values = _values_in(row)
+def _table_box(row: dict[str, str]) -> tuple[Sequence[float], Layout] | None:
     try:
-        box = box_numbers(values, "")
+        box = box_numbers(_values_in(row), "")
     except Exception:  # a cell holds no number; the reader says which
         return None
-    return None if box is None else (list(box[0]), box[1])
+    return None if box is None else box[:2]
 
 
 def _values_in(row: dict[str, str]) -> dict[str, Any]:

@@ -9,16 +9,6 @@ from typing import Any
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import shorten
 from diorama_core.library.labels import names_a_kind
-from diorama_core.perception.inputs.boxes.dictionaries import (
-    FIGURES,
-    box_numbers,
-    find_unused_words,
-    has_class_number,
-    keys_of,
-    numbers,
-    score_of,
-    word_of,
-)
 from diorama_core.perception.inputs.boxes.entry import (
     UNNAMED,
     BoxEntry,
@@ -31,15 +21,23 @@ from diorama_core.perception.inputs.boxes.entry import (
     picture_of,
 )
 from diorama_core.perception.inputs.boxes.nested import (
+    FIGURES,
+    box_numbers,
     class_names_in,
+    find_unused_words,
     has_box,
+    has_class_number,
+    keys_of,
     lists_in,
+    numbers,
+    objects_of,
     picture_name,
     pictures_in,
     rows_of_photo,
+    score_of,
     size_in,
+    word_of,
 )
-from diorama_core.perception.inputs.json_values import objects_of
 
 _COLUMNS = ("boxes", "bboxes", "predboxes", "xyxy", "detectionboxes", "bbox")
 _COLUMN_WORDS = (
@@ -74,7 +72,6 @@ def read_entries(
     *,
     layout: Layout | None = None,
     size: Size | None = None,
-    unit: Unit | None = None,
     names: Mapping[int, str] | None = None,
 ) -> BoxFile:
     """Annotations whose keys may be any program's.
@@ -84,13 +81,13 @@ def read_entries(
         name: of the file.
         layout: how four numbers are to be read, where the file says so.
         size: of the annotated picture, where the file says so.
-        unit: of the coordinates, where the file says so.
         names: of the numbers that stand for classes, where the file says so.
 
     Raises:
         InputError: an entry has no box, or none of four finite numbers.
     """
     boxes, ambiguous = [], True
+    unit: Unit = "pixels"
     rows = [r for r in rows if has_box(r) or word_of(r).lower() != "background"]  # Grounded-SAM lists it as well
     for index, row in enumerate(rows):
         box = box_numbers(row, f"{name}: entry {index}")
@@ -107,7 +104,7 @@ def read_entries(
         unit = "thousandths" if turned else unit
     words, notes = _words(rows, boxes)
     entries = tuple(BoxEntry(e.corners, w, e.score) for e, w in zip(boxes, words, strict=True))
-    return BoxFile(entries, size, unit or "pixels", ambiguous, notes)
+    return BoxFile(entries, size, unit, ambiguous, notes)
 
 
 def is_bare(text: BoxText) -> bool:
@@ -135,15 +132,8 @@ def is_columns(text: BoxText) -> bool:
 
 
 def read_columns(text: BoxText) -> BoxFile:
-    """Boxes with the names and scores of the same place in their lists.
-
-    Raises:
-        InputError: the lists have different lengths.
-    """
-    pictures = objects_of(text.document)
-    document: Any = text.document
-    if pictures:
-        document = picture_of(pictures, [picture_name(p) for p in pictures], text, "file")
+    """Boxes with the names and scores of the same place in their lists."""
+    document = _picture_in(objects_of(text.document), text)
     keys = keys_of(_columns(document) or {})
     name = text.source.name
     boxes = next(rows for k in _COLUMNS if (rows := _rows_of_four(keys.get(k))))
@@ -176,15 +166,8 @@ def is_wrapped(text: BoxText) -> bool:
 
 
 def read_wrapped(text: BoxText) -> BoxFile:
-    """The longest list of annotations within an object, with the picture's size that stands beside it.
-
-    Raises:
-        InputError: it is of several pictures, and none is the photo.
-    """
-    document: Any = text.document
-    pictures = pictures_in(document)
-    if pictures:
-        document = picture_of(pictures, [picture_name(p) for p in pictures], text, "file")
+    """The longest list of annotations within an object, with the picture's size that stands beside it."""
+    document = _picture_in(pictures_in(text.document), text)
     lists = list(lists_in(document))
     if not lists:
         return BoxFile(())
@@ -227,6 +210,11 @@ def _rows_by_key(document: object) -> list[dict[str, Any]]:
         else:
             return []
     return rows
+
+
+def _picture_in(pictures: Sequence[Mapping[str, Any]], text: BoxText) -> Any:
+    """What the file says of the photo among several pictures; all that it says where there are none."""
+    return picture_of([(picture_name(p), p) for p in pictures], text, "file") if pictures else text.document
 
 
 def _words(rows: Sequence[Mapping[str, Any]], entries: Sequence[BoxEntry]) -> tuple[list[str], tuple[str, ...]]:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from xml.etree.ElementTree import Element
 
-from diorama_core.errors import InputError
-from diorama_core.perception.inputs.boxes.dictionaries import box_of, numbers
-from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxEntry, BoxFile, BoxText, Corners, picture_of
-from diorama_core.perception.inputs.json_values import size_of
+from diorama_core.perception.inputs.boxes.entry import UNNAMED, BoxFile, BoxText, Corners, entries_of, picture_of
+from diorama_core.perception.inputs.boxes.nested import box_of, numbers, size_of
 
 
 def is_voc(text: BoxText) -> bool:
@@ -16,14 +14,9 @@ def is_voc(text: BoxText) -> bool:
 
 
 def read_voc(text: BoxText) -> BoxFile:
-    """Boxes of Pascal VOC, whose first pixel is number 1; the bounds of polygons where there is no box.
-
-    Raises:
-        InputError: a box has no four numbers.
-    """
-    root = _root(text)
-    entries = []
-    for index, item in enumerate(root.iter("object")):
+    """Boxes of Pascal VOC, whose first pixel is number 1; the bounds of polygons where there is no box."""
+    boxes = []
+    for index, item in enumerate(text.document.iter("object")):
         box = item.find("bndbox")
         where = f"{text.source.name}: object {index}"
         if box is not None:
@@ -32,11 +25,9 @@ def read_voc(text: BoxText) -> BoxFile:
         else:
             points = [[_number(p.findtext("x")), _number(p.findtext("y"))] for p in item.iter("pt")]
             corners = box_of({"points": points}, where)
-        if corners is not None:
-            entries.append(BoxEntry(corners, (item.findtext("name") or UNNAMED)[:200]))
-    size = root.find("size")
-    stated = None if size is None else size_of(_number(size.findtext("width")), _number(size.findtext("height")))
-    return BoxFile(tuple(entries), stated)
+        boxes.append((corners, (item.findtext("name") or UNNAMED)[:200], 1.0))
+    size = (_number(text.document.findtext(f"size/{side}")) for side in ("width", "height"))
+    return BoxFile(entries_of(boxes), size_of(*size))
 
 
 def is_cvat(text: BoxText) -> bool:
@@ -48,12 +39,8 @@ def is_cvat(text: BoxText) -> bool:
 
 
 def read_cvat(text: BoxText) -> BoxFile:
-    """Boxes and the bounds of polygons and polylines of the photo; of tracks, those of the first frame.
-
-    Raises:
-        InputError: of several pictures none is the photo, or a box has no four numbers.
-    """
-    root = _root(text)
+    """Boxes and the bounds of polygons and polylines of the photo; of tracks, those of the first frame."""
+    root = text.document
     image = image_of(root.findall("image"), text)
     figures: list[tuple[str, Element]] = []
     if image is not None:
@@ -61,20 +48,11 @@ def read_cvat(text: BoxText) -> BoxFile:
     for track in root.findall("track"):
         first = next((f for f in track if f.get("outside") != "1"), None)
         figures += [] if first is None else [(track.get("label") or UNNAMED, first)]
-    entries = []
-    for index, (word, figure) in enumerate(figures):
-        corners = _figure(figure, f"{text.source.name}: figure {index}")
-        if corners is not None:
-            entries.append(BoxEntry(corners, word[:200]))
+    where = f"{text.source.name}: figure"
+    boxes = ((_figure(figure, f"{where} {k}"), word[:200], 1.0) for k, (word, figure) in enumerate(figures))
     stated = size_of(_number(image.get("width")), _number(image.get("height"))) if image is not None else None
-    width, height = (_number(root.findtext(f".//original_size/{side}")) for side in ("width", "height"))
-    return BoxFile(tuple(entries), stated or size_of(width, height))
-
-
-def _root(text: BoxText) -> Element:
-    if not isinstance(text.document, Element):
-        raise InputError(f"{text.source.name}: this is no XML; export the annotations again")
-    return text.document
+    size = (_number(root.findtext(f".//original_size/{side}")) for side in ("width", "height"))
+    return BoxFile(entries_of(boxes), stated or size_of(*size))
 
 
 def _figure(figure: Element, where: str) -> Corners | None:
@@ -90,12 +68,8 @@ def _figure(figure: Element, where: str) -> Corners | None:
 
 
 def image_of(images: list[Element], text: BoxText) -> Element | None:
-    """The picture that is the photo; None where there is none.
-
-    Raises:
-        InputError: of several pictures none is the photo.
-    """
-    return picture_of(images, [i.get("name") for i in images], text, "CVAT file") if images else None
+    """The picture that is the photo; None where there is none."""
+    return picture_of([(i.get("name"), i) for i in images], text, "CVAT file") if images else None
 
 
 def _number(word: str | None) -> float | None:

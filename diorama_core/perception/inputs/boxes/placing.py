@@ -54,11 +54,6 @@ class _Reading:
 def place_boxes(name: str, file: BoxFile, photo: DecodedPhoto) -> tuple[list[Corners], tuple[str, ...]]:
     """The boxes in pixels of the upright original without its border, and what was done to them.
 
-    Args:
-        name: of the file.
-        file: what it says.
-        photo: over which the boxes lie.
-
     Raises:
         InputError: the annotated picture has other proportions than the photo.
     """
@@ -83,8 +78,7 @@ def place_boxes(name: str, file: BoxFile, photo: DecodedPhoto) -> tuple[list[Cor
     else:
         readings = [_Reading(corners), *_others(corners, photo, file.ambiguous_layout)]
     chosen = _best(readings, photo)
-    left, top = frame.margins[:2]
-    moved = [(x1 - left, y1 - top, x2 - left, y2 - top) for x1, y1, x2, y2 in chosen.corners]
+    moved = _within_border(chosen.corners, photo)
     hint = _small_copy_hint(chosen, file, photo) if unit == "pixels" and not chosen.note else ""
     return moved, tuple(note for note in (*notes, chosen.note, hint) if note)
 
@@ -197,18 +191,20 @@ def _best(readings: Sequence[_Reading], photo: DecodedPhoto) -> _Reading:
 def _fits(corners: Sequence[Corners], photo: DecodedPhoto) -> bool:
     """Whether every box has an area and lies within the picture, all but a little."""
     width, height = photo.frame.full_size
-    values = np.array(corners)
+    values, most = np.array(corners), np.array([width, height, width, height])
     areas = (values[:, 2:] - values[:, :2]).min(axis=1)
-    slack = ASPECT_TOLERANCE * np.array([width, height, width, height])
-    inside = (values > -slack) & (values < np.array([width, height, width, height]) + slack)
+    inside = (values > -ASPECT_TOLERANCE * most) & (values < most + ASPECT_TOLERANCE * most)
     return bool((areas >= 1.0).all() and inside.all())
 
 
 def _to_photo_pixels(corners: Sequence[Corners], photo: DecodedPhoto) -> list[Corners]:
-    left, top = photo.frame.margins[:2]
     scale = photo.photo.width / photo.frame.inner_size[0]
-    moved = [(x1 - left, y1 - top, x2 - left, y2 - top) for x1, y1, x2, y2 in corners]
-    return _scale(moved, scale, scale)
+    return _scale(_within_border(corners, photo), scale, scale)
+
+
+def _within_border(corners: Sequence[Corners], photo: DecodedPhoto) -> list[Corners]:
+    left, top = photo.frame.margins[:2]
+    return [(x1 - left, y1 - top, x2 - left, y2 - top) for x1, y1, x2, y2 in corners]
 
 
 def _scale(corners: Sequence[Corners], across: float, down: float) -> list[Corners]:

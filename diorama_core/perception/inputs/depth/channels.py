@@ -18,9 +18,7 @@ AGREEING = 0.9
 def one_channel(array: Shaped[np.ndarray, "..."], name: str) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
     """The depth of an array, and a note where it was one of several channels.
 
-    Args:
-        array: (h, w) with singleton axes, or a point map (h, w, 3) or (3, h, w).
-        name: of the file.
+    It is (h, w) with singleton axes, or a point map (h, w, 3) or (3, h, w).
 
     Raises:
         InputError: it has another shape, or channels of which none is depth.

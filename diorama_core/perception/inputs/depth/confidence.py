@@ -33,12 +33,7 @@ def is_map(companion: Source) -> bool:
 def without_unsure(
     source: Source, values: Shaped[np.ndarray, "h w"]
 ) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
-    """A map with 0 where the confidence that lies beside its file is low, and what was done; the map itself without.
-
-    Args:
-        source: the file of the depth.
-        values: as it holds them.
-    """
+    """A map with 0 where the confidence that lies beside its file is low, and what was done; the map itself without."""
     for beside in tuple(c for c in source.companions if is_map(c)) or _confidence_files(source):
         confidence = _read(beside, values.shape)
         if confidence is None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import io
 import math
 import re
+from collections.abc import Callable
 
 import numpy as np
-from jaxtyping import Float, Shaped
+from jaxtyping import Shaped
 
 from diorama_core.errors import InputError
 from diorama_core.perception import exr
@@ -16,13 +17,12 @@ from diorama_core.perception.inputs.depth.numpy_files import (
     MAX_DEPTH_MEGAPIXELS,
     DepthContent,
     RawDepth,
-    is_npy,
     is_npz,
     read_npy,
     read_npz,
 )
 from diorama_core.perception.inputs.photos.decoding import load_pixels, open_picture
-from diorama_core.perception.inputs.source import Form, Source
+from diorama_core.perception.inputs.source import Form
 
 MIN_SIDE = 24
 """Rows and columns: lists of boxes, cameras and points are narrower."""
@@ -30,31 +30,26 @@ _ROW = re.compile(rb"[0-9eE.,;\t +-]+|(?i:[0-9eE.,;\t +-]|nan|inf)+")
 _SEPARATED = re.compile(rb"[\s,;]+")
 
 
-def is_number_table(source: Source) -> bool:
+def is_number_table(content: DepthContent) -> bool:
     """Whether its first lines are rows of equally many numbers, as many as a picture has columns."""
-    head = source.data[:400_000].lstrip(b"\xef\xbb\xbf").splitlines()[:MIN_SIDE]
+    head = content.source.data[:400_000].lstrip(b"\xef\xbb\xbf").splitlines()[:MIN_SIDE]
     counts = {len(_SEPARATED.split(row.strip())) for row in head if _ROW.fullmatch(row)}
     numbers_only = len(head) == MIN_SIDE and all(_ROW.fullmatch(row) for row in head)
     return numbers_only and len(counts) == 1 and min(counts) >= MIN_SIDE
 
 
-def read_number_table(source: Source) -> Float[np.ndarray, "h w"]:
-    """The numbers.
-
-    Raises:
-        InputError: a row is damaged or of another length.
-    """
-    text = _SEPARATED_IN_ROW.sub(b" ", source.data.lstrip(b"\xef\xbb\xbf"))
+def read_number_table(content: DepthContent) -> RawDepth:
+    """The numbers; whole ones are millimetres unless the picture says otherwise."""
+    source = content.source
+    text = re.sub(rb"[,;\t]+", b" ", source.data.lstrip(b"\xef\xbb\xbf"))
     try:
         values = np.loadtxt(io.BytesIO(text), dtype=np.float64, ndmin=2)
     except (ValueError, OverflowError) as error:
         raise InputError(f"{source.name}: a row of the table of depth is damaged; save it as .npy") from error
     if min(values.shape) < MIN_SIDE:
         raise InputError(f"{source.name}: a table of {values.shape[1]} x {values.shape[0]} numbers is no depth map")
-    return values
-
-
-_SEPARATED_IN_ROW = re.compile(rb"[,;\t]+")
+    whole = bool((values == np.round(values)).all()) and float(np.median(values)) > MAX_WHOLE_METRES
+    return RawDepth(values.astype(np.int64) if whole else values)
 
 
 _PICTURE_STARTS = (b"\x89PNG", b"II*\0", b"MM\0*", b"II+\0", b"Pf", b"PF", b"P5", b"\xff\xd8", b"RIFF", b"BM", b"GIF8")
@@ -99,11 +94,6 @@ def _sixteen_bits(data: bytes) -> Shaped[np.ndarray, "h w 3"]:
     return np.asarray(cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED))[..., 2::-1]
 
 
-def is_exr(content: DepthContent) -> bool:
-    """Whether it is an OpenEXR file."""
-    return content.source.data.startswith(exr.MAGIC)
-
-
 def read_exr(content: DepthContent) -> RawDepth:
     """The depth channel; of a point map, the one that is depth."""
     name = content.source.name
@@ -111,12 +101,7 @@ def read_exr(content: DepthContent) -> RawDepth:
         values, notes = one_channel(exr.read_depth_channels(content.source.data), name)
     except exr.ExrError as error:
         raise InputError(f"{name}: {error}, or as .npy (metres) or 16-bit PNG") from error
-    return RawDepth(values, True, notes)
-
-
-def is_picture(content: DepthContent) -> bool:
-    """Whether it begins as a picture does."""
-    return content.source.data.startswith(_PICTURE_STARTS)
+    return RawDepth(values, notes)
 
 
 def read_picture(content: DepthContent) -> RawDepth:
@@ -143,19 +128,7 @@ def read_picture(content: DepthContent) -> RawDepth:
             "save it as 16-bit PNG in millimetres or .npy in metres"
         )
     notes = ("the depth has 8 bits only, which is coarse",) if array.dtype.itemsize == 1 else ()
-    return RawDepth(array, array.dtype.kind == "f", (*packed, *notes))
-
-
-def is_text(content: DepthContent) -> bool:
-    """Whether it is a table of numbers."""
-    return is_number_table(content.source)
-
-
-def read_text(content: DepthContent) -> RawDepth:
-    """The numbers; whole ones are millimetres unless the picture says otherwise."""
-    values = read_number_table(content.source)
-    whole = bool((values == np.round(values)).all()) and float(np.median(values)) > MAX_WHOLE_METRES
-    return RawDepth(values.astype(np.int64) if whole else values, not whole)
+    return RawDepth(array, (*packed, *notes))
 
 
 def is_dump(content: DepthContent) -> bool:
@@ -176,7 +149,11 @@ def read_dump(content: DepthContent) -> RawDepth:
     native = values.astype(np.dtype(kind).newbyteorder("="))
     words = {"<u2": "16-bit numbers", ">u2": "16-bit numbers", "<f4": "32-bit floats", "<f2": "16-bit floats"}[kind]
     note = f"the depth is a bare dump, read as {values.shape[1]} x {values.shape[0]} {words}"
-    return RawDepth(native, native.dtype.kind == "f", (note,))
+    return RawDepth(native, (note,))
+
+
+def _begins(*starts: bytes) -> Callable[[DepthContent], bool]:
+    return lambda content: content.source.data.startswith(starts)
 
 
 DEPTH_FORMS: tuple[Form[DepthContent, RawDepth], ...] = (
@@ -184,7 +161,7 @@ DEPTH_FORMS: tuple[Form[DepthContent, RawDepth], ...] = (
         "numpy array (.npy)",
         "networks, scripts",
         "metres, or whole numbers by --depth-scale; point maps",
-        is_npy,
+        _begins(b"\x93NUMPY"),
         read_npy,
     ),
     Form(
@@ -198,22 +175,22 @@ DEPTH_FORMS: tuple[Form[DepthContent, RawDepth], ...] = (
         "OpenEXR (.exr)",
         "Blender, V-Ray, Unreal",
         "channel Z, or the depth of a point map, in metres",
-        is_exr,
+        _begins(exr.MAGIC),
         read_exr,
     ),
     Form(
         "picture (PNG, TIFF, PFM, PGM)",
         "Kinect, RealSense, TUM RGB-D, ScanNet, KITTI, MiDaS",
         "whole numbers by --depth-scale (millimetres unless the picture says otherwise), or floats in metres",
-        is_picture,
+        _begins(*_PICTURE_STARTS),
         read_picture,
     ),
     Form(
         "table of numbers (.txt, .csv)",
         "numpy's savetxt, MATLAB, spreadsheets",
         "a row for each row of the picture; whole numbers by --depth-scale, others in metres",
-        is_text,
-        read_text,
+        is_number_table,
+        read_number_table,
     ),
     Form(
         "bare dump (.raw, .bin)",

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.library.taxonomy import UNKNOWN, category
@@ -55,6 +55,14 @@ CONTRADICTION = 3.0
 """Nats by which another reading must be better for a map to contradict its given kind."""
 
 
+@dataclass(frozen=True)
+class Known:
+    """What is known beside a map: boxes of named things in shares of the longer side, and the focal length over it."""
+
+    boxes: tuple[LabelledBox, ...] = ()
+    focal: float | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class DepthReading:
     """One reading of a map's numbers."""
@@ -71,22 +79,10 @@ class DepthReading:
 
 
 def depth_readings(
-    values: Float[np.ndarray, "h w"],
-    valid: Bool[np.ndarray, "h w"],
-    boxes: Sequence[LabelledBox],
-    focal: float | None,
-    asked: DepthKind = "auto",
+    values: Float[np.ndarray, "h w"], known: Known, asked: DepthKind = "auto"
 ) -> tuple[DepthReading, ...]:
-    """All readings that come into question, likeliest first.
-
-    Args:
-        values: the map's positive numbers.
-        valid: where there are some.
-        boxes: named things in shares of the longer side.
-        focal: over the longer side, where it is known.
-        asked: what they are said to be; a reading of that kind is among the answer.
-    """
-    sample, order = sample_depth(values, valid), depth_order(values, valid, boxes)
+    """All readings of a map's positive numbers that come into question, likeliest first; `asked` is among them."""
+    sample, order = sample_depth(values), depth_order(values, known.boxes)
     scale = max(float(np.median(sample.values)), 1e-12)
     sample = SampledDepth(sample.x, sample.y, sample.values / scale)
     readings = [
@@ -95,7 +91,7 @@ def depth_readings(
     ]
     exact = readings[0].fit.explained > EXACT
     rays = () if exact and asked != "distance" else _ray_focals(sample, always=asked == "distance")
-    for trial in rays if focal is None else (focal,):
+    for trial in rays if known.focal is None else (known.focal,):
         readings.append(_reading("distance", DEPTH, planes_of(to_axial_depth(sample, trial)), order, trial))
     for kind, function in () if exact and asked not in BENT else _find_bent_functions(sample, asked):
         readings.append(_reading(kind, function, planes_of(sample, function), order))
@@ -103,20 +99,15 @@ def depth_readings(
     return tuple(sorted(restored, key=lambda r: -r.score))
 
 
-def depth_order(
-    values: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"], boxes: Sequence[LabelledBox]
-) -> float:
+def depth_order(values: Float[np.ndarray, "h w"], boxes: Sequence[LabelledBox]) -> float:
     """Order of depth, 1 if larger numbers are farther, else -1: by the picture's lower end and objects' backgrounds."""
     height = len(values)
-    known = values[valid]
-    spread = float(np.ptp(np.percentile(known, [10, 90]))) or 1.0
-    lower, middle = (
-        _median(values, valid, np.s_[int(a * height) : int(b * height)]) for a, b in ((0.85, 1.0), (0.4, 0.6))
-    )
+    spread = float(np.ptp(np.percentile(values[values > 0], [10, 90]))) or 1.0
+    lower, middle = (_median(values[int(a * height) : int(b * height)]) for a, b in ((0.85, 1.0), (0.4, 0.6)))
     medians = []
     if lower is not None and middle is not None:
         medians.append(float(np.clip(2.0 * (middle - lower) / spread, -1.0, 1.0)))
-    votes = [v for box in boxes if (v := _background_order(values, valid, box, spread)) is not None]
+    votes = [v for box in boxes if (v := _background_order(values, box, spread)) is not None]
     if votes:
         medians.append(float(np.mean(votes)))
     return float(np.mean(medians)) if medians else 0.0
@@ -193,19 +184,18 @@ def _to_map_unit(reading: DepthReading, scale: float) -> DepthReading:
     return replace(reading, fit=fit, function=function)
 
 
-def _background_order(values: np.ndarray, valid: np.ndarray, box: LabelledBox, spread: float) -> float | None:
+def _background_order(values: np.ndarray, box: LabelledBox, spread: float) -> float | None:
     """Order of depth by the background above and beside an object on the floor: 1 if its numbers are larger, or -1."""
     if box.category == UNKNOWN.name or category(box.category).mount != "floor" or box.category == "rug":
         return None
     side = max(values.shape)
     x1, y1, x2, y2 = (round(v * side) for v in box.box)
     width, tall = x2 - x1, y2 - y1
-    inner = np.s_[y1 + tall // 3 : y2 - tall // 4, x1 + width // 4 : x2 - width // 4]
-    above = np.s_[max(0, y1 - max(tall // 3, 3)) : y1, x1:x2]
-    here, above_it = _median(values, valid, inner), _median(values, valid, above)
-    return None if here is None or above_it is None else float(np.clip(4.0 * (above_it - here) / spread, -1.0, 1.0))
+    here = _median(values[y1 + tall // 3 : y2 - tall // 4, x1 + width // 4 : x2 - width // 4])
+    above = _median(values[max(0, y1 - max(tall // 3, 3)) : y1, x1:x2])
+    return None if here is None or above is None else float(np.clip(4.0 * (above - here) / spread, -1.0, 1.0))
 
 
-def _median(values: np.ndarray, valid: np.ndarray, part: tuple[slice, ...] | slice) -> float | None:
-    values_of_part = values[part][valid[part]]
-    return float(np.median(values_of_part)) if values_of_part.size >= 9 else None
+def _median(values: np.ndarray) -> float | None:
+    known = values[values > 0]
+    return float(np.median(known)) if known.size >= 9 else None

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Shaped
-from numpy.lib import format as npy
 
 from diorama_core.errors import InputError
+from diorama_core.perception.inputs.arrays import array_header
 from diorama_core.perception.inputs.depth.channels import one_channel
 from diorama_core.perception.inputs.depth.voids import only_sure
 from diorama_core.perception.inputs.source import Source
@@ -37,22 +37,20 @@ class RawDepth:
     """The numbers of a depth map as they are stored."""
 
     values: Shaped[np.ndarray, "h w"]
-    is_float: bool
     notes: tuple[str, ...] = ()
     stated_kind: str | None = None
     """"inverse" where the array's name says so."""
 
-
-def is_npy(content: DepthContent) -> bool:
-    """Whether it is an array of numpy."""
-    return content.source.data.startswith(b"\x93NUMPY")
+    @property
+    def is_float(self) -> bool:
+        """Whether they are metres by themselves; whole numbers have a unit of their own."""
+        return self.values.dtype.kind == "f"
 
 
 def read_npy(content: DepthContent) -> RawDepth:
     """An array, after its header was found to promise no more than the file holds."""
     array = _array(content.source.data, content.source.name)
-    values, notes = one_channel(array, content.source.name)
-    return RawDepth(values, values.dtype.kind == "f", notes)
+    return RawDepth(*one_channel(array, content.source.name))
 
 
 def is_npz(content: DepthContent) -> bool:
@@ -85,15 +83,14 @@ def read_npz(content: DepthContent) -> RawDepth:
     values, notes = one_channel(maps[key], name)
     kind = "inverse" if key in _RELATIVE_NAMES else None
     values, more = _apply_masks(values, read, key)
-    return RawDepth(values, values.dtype.kind == "f", (*notes, *more), kind)
+    return RawDepth(values, (*notes, *more), kind)
 
 
 def _array(data: bytes, name: str) -> np.ndarray:
     """An array of numbers; the header is not trusted to allocate more than the file holds."""
     stream = io.BytesIO(data)
     try:
-        version = npy.read_magic(stream)
-        shape, _, dtype = npy.read_array_header_1_0(stream) if version == (1, 0) else npy.read_array_header_2_0(stream)
+        shape, dtype = array_header(stream)
         if dtype.kind not in "fiub":
             raise InputError(f"{name}: depth in .npy must be floats in metres or whole numbers, this holds {dtype}")
         count = math.prod(shape)
@@ -101,7 +98,7 @@ def _array(data: bytes, name: str) -> np.ndarray:
             raise InputError(f"{name}: {count / 1e6:.0f} megapixels of depth are too many; save the photo's size")
         if count * dtype.itemsize > len(data):
             raise ValueError("fewer numbers than the header states")
-        return np.asarray(np.load(io.BytesIO(data), allow_pickle=False))
+        return np.asarray(np.load(stream, allow_pickle=False))
     except InputError:
         raise
     except Exception as error:  # a damaged header raises almost anything

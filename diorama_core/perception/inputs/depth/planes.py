@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 
 @dataclass(frozen=True)
@@ -101,9 +101,10 @@ class PlaneFit:
     """Share of the points on each plane."""
 
 
-def sample_depth(values: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"]) -> SampledDepth:
-    """Evenly spread valid numbers of a map, each the median of its neighbourhood."""
+def sample_depth(values: Float[np.ndarray, "h w"]) -> SampledDepth:
+    """Evenly spread positive numbers of a map, each the median of its neighbourhood."""
     height, width = values.shape
+    valid = values > 0
     step = max(1, int(np.sqrt(valid.sum() / MAX_POINTS)))
     rows, columns = np.nonzero(valid[step // 2 :: step, step // 2 :: step])
     rows, columns = rows * step + step // 2, columns * step + step // 2
@@ -119,13 +120,7 @@ def sample_depth(values: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"
 
 
 def planes_of(sample: SampledDepth, function: DepthFunction = DEPTH, trials: int = TRIALS) -> PlaneFit:
-    """The planes of a map, one after another by random trials.
-
-    Args:
-        sample: the numbers.
-        function: of depth that they are.
-        trials: planes through three points that are tried for each plane found.
-    """
+    """The planes of a map, one after another, each the best of so many random ones through three points."""
     random = np.random.default_rng(_SEED)
     basis = np.stack([sample.x, sample.y, np.ones_like(sample.x)], axis=1)
     numbers = _Numbers(basis, sample.values, sample.spread, function)

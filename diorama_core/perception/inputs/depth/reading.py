@@ -18,15 +18,17 @@ from diorama_core.perception.inputs.depth.kinds import (
     MIN_ORDER,
     DepthKind,
     DepthReading,
+    Known,
     depth_readings,
     rays_of,
 )
 from diorama_core.perception.inputs.depth.numpy_files import DepthContent, RawDepth
-from diorama_core.perception.inputs.depth.relative import metric_depth, metric_of_bent
 from diorama_core.perception.inputs.depth.scale import (
     AmbiguousDepthError,
     DepthAnswer,
     focal_of_planes,
+    metric_depth,
+    metric_of_bent,
     scale_evidence,
     unit_of,
 )
@@ -116,49 +118,31 @@ def read_depth(
     size = (photo.photo.width, photo.photo.height)
     raw = _raw(source, photo)
     trusted, unsure = without_unsure(source, raw.values)
-    trusted, upended = _positive(trusted, is_float=raw.is_float)
+    trusted, upended = _positive(trusted)
     values, laid = photo.frame.align_map(source.name, "depth", trusted)
     if options.encoding == "sunrgbd" and not raw.is_float:
         values = _unrotate_bits(values)
-    valid, voids = find_measured_pixels(values, is_float=raw.is_float)
+    valid, voids = find_measured_pixels(values)
     if valid.sum() <= MIN_COVERAGE * valid.size:
         raise InputError(f"{source.name}: the depth is empty or nearly so; leave it out or choose another file")
     with np.errstate(invalid="ignore", over="ignore"):
         numbers = np.where(valid, values, 0).astype(np.float32)
-    over = None if options.kind != "auto" or valid.sum() < MIN_PIXELS else find_turn(numbers, valid, photo.photo.rgb)
+    over = None if options.kind != "auto" or valid.sum() < MIN_PIXELS else find_turn(numbers, photo.photo.rgb)
     if over is not None:
         numbers = apply_turn(numbers, over)
-        valid, laid = numbers > 0, (*laid, f"the depth lies {over} over the photo, by the edges of both; it was turned")
-    depth, understood = _convert_to_metres(
-        source.name, numbers, valid, raw, options, _Scene.of(photo, boxes, intrinsics)
-    )
+        laid = (*laid, f"the depth lies {over} over the photo, by the edges of both; it was turned")
+    depth, understood = _convert_to_metres(source.name, numbers, raw, options, _surroundings(photo, boxes, intrinsics))
     coverage = _check_plausible(source.name, depth, values, raw, options)
     resized, coarse = _resize_to_photo(depth, size)
     resized.setflags(write=False)
     return resized, (*raw.notes, *unsure, *upended, *laid, *voids, *understood, *coverage, *coarse)
 
 
-@dataclass(frozen=True)
-class _Scene:
-    """What is known beside the depth: named things in shares of the longer side, and the focal length over it."""
-
-    boxes: tuple[LabelledBox, ...]
-    focal: float | None
-
-    @classmethod
-    def of(cls, photo: DecodedPhoto, boxes: tuple[LabelledBox, ...], intrinsics: Intrinsics | None) -> _Scene:
-        """In shares of the photo's longer side.
-
-        Args:
-            photo: decoded, upright.
-            boxes: of named things, in pixels of the photo.
-            intrinsics: of the photo, where they were given; else its EXIF data tell.
-        """
-        side = max(photo.photo.width, photo.photo.height)
-        shares = tuple(replace(b, box=_shares(b.box, side)) for b in boxes)
-        stated = photo.photo.exif_focal_px if intrinsics is None else intrinsics.fx
-        focal = None if stated is None else stated / side
-        return cls(shares, focal)
+def _surroundings(photo: DecodedPhoto, boxes: tuple[LabelledBox, ...], intrinsics: Intrinsics | None) -> Known:
+    """The boxes and the focal length, the given one or that of the header, in shares of the photo's longer side."""
+    side = max(photo.photo.width, photo.photo.height)
+    focal = photo.photo.exif_focal_px if intrinsics is None else intrinsics.fx
+    return Known(tuple(replace(b, box=_shares(b.box, side)) for b in boxes), None if focal is None else focal / side)
 
 
 def _shares(box: Box, side: int) -> Box:
@@ -188,31 +172,26 @@ def _what_it_is(source: Source) -> str:
 
 
 def _convert_to_metres(
-    name: str,
-    numbers: Float32[np.ndarray, "h w"],
-    valid: Bool[np.ndarray, "h w"],
-    raw: RawDepth,
-    options: DepthOptions,
-    scene: _Scene,
+    name: str, numbers: Float32[np.ndarray, "h w"], raw: RawDepth, options: DepthOptions, known: Known
 ) -> tuple[Float32[np.ndarray, "h w"], tuple[str, ...]]:
     """The numbers as metres along the optical axis."""
     stated = 1.0 if raw.is_float else MILLIMETRES
     is_metric = options.kind == "depth" and options.per_metre is not None
-    if is_metric or (options.kind == "auto" and valid.sum() < MIN_PIXELS):
+    if is_metric or (options.kind == "auto" and np.count_nonzero(numbers) < MIN_PIXELS):
         return _to_metres(numbers, options.per_metre or stated), ()
-    readings = depth_readings(numbers, valid, scene.boxes, scene.focal, options.kind)
+    readings = depth_readings(numbers, known, options.kind)
     reading, notes = choose_reading(name, readings, raw.stated_kind, options.kind)
     if reading.kind == "inverse":
-        depth, more = metric_depth(name, numbers, valid, reading.fit, scene.boxes, scene.focal)
+        depth, more = metric_depth(name, numbers, reading.fit, known)
         return depth.astype(np.float32), (*notes, *more)
     if reading.kind in BENT:
-        depth, more = metric_of_bent(name, numbers, valid, reading, scene.boxes, scene.focal, options.per_metre)
+        depth, more = metric_of_bent(name, numbers, reading, known, options.per_metre)
         return depth.astype(np.float32), (*notes, *more)
     along = numbers
     if reading.kind == "distance" and reading.focal is not None:
         along = (numbers / rays_of(numbers.shape[0], numbers.shape[1], reading.focal)).astype(np.float32)
-    focal = scene.focal or reading.focal or focal_of_planes(reading.fit)
-    evidence = scale_evidence(along, valid, reading.fit, focal, scene.boxes)
+    focal = known.focal or reading.focal or focal_of_planes(reading.fit)
+    evidence = scale_evidence(along, reading.fit, focal, known.boxes)
     unit = unit_of(evidence, options.per_metre or stated)
     if options.per_metre is not None:
         doubt = f"{unit.note or unit.question}".split("; ")[0]
@@ -232,11 +211,9 @@ def _to_metres(numbers: Float32[np.ndarray, "h w"], per_metre: float) -> Float32
     return numbers if per_metre == 1.0 else (numbers / np.float64(per_metre)).astype(np.float32)
 
 
-def _positive(
-    values: Shaped[np.ndarray, "h w"], *, is_float: bool
-) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
+def _positive(values: Shaped[np.ndarray, "h w"]) -> tuple[Shaped[np.ndarray, "h w"], tuple[str, ...]]:
     """Depth of cameras that look along -z (OpenGL, Blender) as distance before them."""
-    if not is_float or np.mean(values < 0) < MOSTLY or np.mean(values > 0) > 1.0 - MOSTLY:
+    if values.dtype.kind != "f" or np.mean(values < 0) < MOSTLY or np.mean(values > 0) > 1.0 - MOSTLY:
         return values, ()
     return -values, ("the depth is negative, as of a camera that looks along -z; its sign was changed",)
 
@@ -296,21 +273,16 @@ def _resize_to_photo(
     return resized, ()
 
 
-def find_turn(
-    values: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"], rgb: UInt8[np.ndarray, "h2 w2 3"]
-) -> str | None:
-    """How a map lies over its photo, where that is clearly not as the photo; None otherwise.
-
-    Args:
-        values: of the map.
-        valid: where it was measured.
-        rgb: the photo, of the same proportions.
+def find_turn(values: Float[np.ndarray, "h w"], rgb: UInt8[np.ndarray, "h2 w2 3"]) -> str | None:
+    """How a map, 0 where nothing was measured, lies over its photo of the same proportions, where that is clearly not
+    as the photo; None otherwise.
     """
     import cv2  # the editor opens without it
 
     scale = WORKING_SIDE_PX / max(rgb.shape[:2])
     size = max(8, round(rgb.shape[1] * scale)), max(8, round(rgb.shape[0] * scale))
     grey = cv2.cvtColor(cv2.resize(rgb, size, interpolation=cv2.INTER_AREA), cv2.COLOR_RGB2GRAY).astype(np.float32)
+    valid = values > 0
     low, high = np.percentile(values[::4, ::4][valid[::4, ::4]], [2, 98])
     even = np.clip((np.where(valid, values, low) - low) / max(float(high - low), 1e-12), 0, 1).astype(np.float32)
     steps = cv2.resize(even, size, interpolation=cv2.INTER_AREA)

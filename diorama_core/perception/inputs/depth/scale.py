@@ -1,5 +1,7 @@
-"""How long the unit of a depth map is: which of the usual ones, as named things have usual sizes and rooms usual
-heights.
+"""How long the unit of a depth map is: which of the usual ones, by usual sizes of named things and heights of rooms.
+
+What has no unit is made metric: inverse depth of any offset and unit, and roots, logarithms and offsets of depth. Walls
+meet floors at right angles, things have their sizes, and a camera is held at a person's height.
 """
 
 from __future__ import annotations
@@ -8,14 +10,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.library.kinds import sizes_of_kind
 from diorama_core.library.taxonomy import UNKNOWN
-from diorama_core.perception.inputs.depth.kinds import DepthKind
-from diorama_core.perception.inputs.depth.planes import PlaneFit
+from diorama_core.perception.inputs.depth.kinds import DepthKind, DepthReading, Known
+from diorama_core.perception.inputs.depth.planes import DepthFunction, PlaneFit
 
 USUAL_UNITS = {
     1.0: "metres", 1000.0: "millimetres", 5000.0: "1/5000 m, as in TUM RGB-D", 4000.0: "1/4000 m",
@@ -68,12 +70,7 @@ class DepthUnit:
 
 
 def unit_of(evidence: ScaleEvidence | None, stated: float) -> DepthUnit:
-    """The unit of a map.
-
-    Args:
-        evidence: how many metres a unit is, by the picture; None where it says nothing.
-        stated: units per metre that the container has.
-    """
+    """The unit of a map whose container states so many units per metre; `evidence` is None where nothing is seen."""
     if evidence is None or (evidence.things < MIN_THINGS and not evidence.heights_agree):
         return DepthUnit(stated, _doubtful_height(evidence, stated))
     seen = -evidence.log_scale
@@ -190,38 +187,27 @@ def focal_score(fit: PlaneFit) -> tuple[float, float]:
     return float(score[best]), float(FOCAL_GRID[best])
 
 
-def size_scatter(
-    depth: Float[np.ndarray, "h w"], valid: Bool[np.ndarray, "h w"], focal: float, boxes: Sequence[LabelledBox]
-) -> float:
+def size_scatter(depth: Float[np.ndarray, "h w"], focal: float, boxes: Sequence[LabelledBox]) -> float:
     """The median deviation of the logarithms of things' sizes from their median; 0 for fewer than three things.
 
-    Args:
-        depth: z in camera, in the map's unit.
-        valid: where it was measured.
-        focal: focal length in shares of the picture's longer side.
-        boxes: of named things, in shares of the longer side.
+    Lengths are as `scale_evidence` has them.
     """
-    logs = np.array([v for box in boxes for v in _log_scales(depth, valid, focal, box)])
+    logs = np.array([v for box in boxes for v in _log_scales(depth, focal, box)])
     return float(np.median(np.abs(logs - np.median(logs)))) if len(logs) >= 6 else 0.0
 
 
 def scale_evidence(
-    depth: Float[np.ndarray, "h w"],
-    valid: Bool[np.ndarray, "h w"],
-    fit: PlaneFit,
-    focal: float,
-    boxes: Sequence[LabelledBox],
+    depth: Float[np.ndarray, "h w"], fit: PlaneFit, focal: float, boxes: Sequence[LabelledBox]
 ) -> ScaleEvidence | None:
     """How long a map's unit is in metres; None where neither named things nor a floor say so.
 
     Args:
-        depth: along the optical axis, in an unknown unit, of the photo's proportions.
-        valid: where it was measured.
+        depth: along the optical axis, in an unknown unit, of the photo's proportions; 0 where it was not measured.
         fit: its planes.
         focal: over the longer side.
         boxes: in shares of the longer side of the map, x and y from its upper left.
     """
-    logs = [v for box in boxes for v in _log_scales(depth, valid, focal, box)]
+    logs = [v for box in boxes for v in _log_scales(depth, focal, box)]
     height, room = _heights(fit, focal)
     terms = []
     if logs:
@@ -261,15 +247,15 @@ def _heights(fit: PlaneFit, focal: float) -> tuple[float | None, float | None]:
     return floor, None if floor is None or not len(ceilings) else floor + float(ceilings.max())
 
 
-def _log_scales(depth: np.ndarray, valid: np.ndarray, focal: float, box: LabelledBox) -> list[float]:
+def _log_scales(depth: np.ndarray, focal: float, box: LabelledBox) -> list[float]:
     """Logarithms of a thing's usual height and width over what the map says of them."""
     if box.category == UNKNOWN.name:
         return []
     side, (height, width) = max(depth.shape), depth.shape
     x1, y1, x2, y2 = (v * side for v in box.box)
     inner_x, inner_y = 0.2 * (x2 - x1), 0.2 * (y2 - y1)
-    part = np.s_[int(y1 + inner_y) : int(y2 - inner_y) + 1, int(x1 + inner_x) : int(x2 - inner_x) + 1]
-    values = depth[part][valid[part]]
+    values = depth[int(y1 + inner_y) : int(y2 - inner_y) + 1, int(x1 + inner_x) : int(x2 - inner_x) + 1]
+    values = values[values > 0]
     if len(values) < 9:
         return []
     distance = float(np.percentile(values, NEAR_PERCENTILE))
@@ -280,3 +266,83 @@ def _log_scales(depth: np.ndarray, valid: np.ndarray, focal: float, box: Labelle
     low, far = MARGIN * side, np.array([width, height]) - MARGIN * side
     whole = {"h": y1 > low and y2 < far[1], "w": x1 > low and x2 < far[0]}
     return [float(np.log(usual[k] / seen[k])) for k in ("h", "w") if whole[k] and seen[k] > 0]
+
+
+OFFSETS = np.concatenate([[0.0], np.geomspace(0.003, 2.0, 60), -np.geomspace(0.003, 0.95, 40)])
+"""Added to the numbers, in shares of their smallest: what a network or a program subtracted before."""
+SCATTER_WEIGHT = 12.0
+"""Nats for a scatter of one e-fold among the sizes of named things."""
+BASES = (1.0, float(np.log(2.0)), float(np.log(10.0)))
+"""Rates of the logarithms that are in use."""
+NEAR_BASE = 0.15
+"""Tolerance of the logarithm of a fitted rate to one of those; planes tell it to a tenth."""
+
+
+def metric_depth(
+    name: str, values: Float[np.ndarray, "h w"], fit: PlaneFit, known: Known
+) -> tuple[Float[np.ndarray, "h w"], tuple[str, ...]]:
+    """Depth along the optical axis in metres, with a note how it came about.
+
+    Args:
+        name: of the file.
+        values: inverse depth times anything plus anything; 0 where there is none.
+        fit: planes of the values.
+        known: beside them.
+
+    Raises:
+        InputError: neither named things nor a floor give it a size.
+    """
+    smallest = float(np.percentile(values[values > 0], 0.5))
+    best: tuple[float, Float[np.ndarray, "h w"], PlaneFit, float] | None = None
+    for offset in OFFSETS * smallest:
+        depth = np.where(values > 0, 1.0 / np.maximum(values + offset, 0.02 * smallest), 0.0)
+        moved = PlaneFit(fit.explained, fit.planes + np.array([0.0, 0.0, offset]), fit.shares)
+        score, angle_focal = focal_score(moved)
+        focal = known.focal if known.focal is not None else angle_focal
+        total = score - SCATTER_WEIGHT * size_scatter(depth, focal, known.boxes)
+        if best is None or total > best[0]:
+            best = total, depth, moved, focal
+    assert best is not None
+    _, depth, moved, focal = best
+    factor = _factor(name, scale_evidence(depth, moved, focal, known.boxes))
+    note = f"{name} is inverse depth; its size and offset were fitted to walls, floor and the usual sizes of objects"
+    return depth * factor, (note,)
+
+
+def metric_of_bent(
+    name: str, values: Float[np.ndarray, "h w"], reading: DepthReading, known: Known, per_metre: float | None
+) -> tuple[Float[np.ndarray, "h w"], tuple[str, ...]]:
+    """Depth in metres of its root or logarithm, with a note how it came about.
+
+    Args:
+        name: of the file.
+        values: the root, the logarithm, or depth less a constant; 0 where there is none.
+        reading: of the numbers.
+        known: beside them.
+        per_metre: numbers for one of metres: their root times this, or their natural logarithm; None to fit it.
+
+    Raises:
+        InputError: neither named things nor a floor give it a size.
+    """
+    rate, function = reading.function.rate, reading.function
+    if per_metre is not None:
+        natural = function if rate is None else DepthFunction(rate=1.0)
+        return np.where(values > 0, 1.0 / natural.inverse_depth(values / per_metre), 0.0), ()
+    base = None if rate is None else min(BASES, key=lambda b: abs(np.log(rate / b)))
+    usual = reading.kind == "root" or (base is not None and rate is not None and abs(np.log(rate / base)) < NEAR_BASE)
+    if usual and base is not None:
+        function = DepthFunction(rate=base)
+    depth = np.where(values > 0, 1.0 / function.inverse_depth(values), 0.0)
+    evidence = scale_evidence(depth, reading.fit, known.focal or focal_of_planes(reading.fit), known.boxes)
+    if usual and (evidence is None or abs(evidence.log_scale) < CONTRADICTED_BY):
+        return depth, (f"{name} was read as the {reading.kind} of metres",)
+    note = f"{name} was read as {reading.kind}; its size was fitted to the floor and the usual sizes of objects"
+    return depth * _factor(name, evidence), (note,)
+
+
+def _factor(name: str, evidence: ScaleEvidence | None) -> float:
+    if evidence is None:
+        raise InputError(
+            f"{name}: this depth has no unit, and no named object or floor gives it one; add --boxes, or metric depth"
+        )
+    return float(np.exp(evidence.log_scale))

@@ -24,18 +24,15 @@ MIN_SURE = 0.05
 """Share of the measured pixels that must be sure: fewer are no depth of a room."""
 
 
-def find_measured_pixels(
-    values: Shaped[np.ndarray, "h w"], *, is_float: bool
-) -> tuple[Bool[np.ndarray, "h w"], tuple[str, ...]]:
+def find_measured_pixels(values: Shaped[np.ndarray, "h w"]) -> tuple[Bool[np.ndarray, "h w"], tuple[str, ...]]:
     """Where a map's numbers are measurements, and a note about numbers that mean the opposite.
 
     Zero, negative numbers, NaN, infinities and a renderer's sky never are. Beyond these, the ends of the integer type
     and any number that is repeated far beyond (or below) all others mean nothing.
     """
+    is_float = values.dtype.kind == "f"
     with np.errstate(invalid="ignore"):
-        seen = np.isfinite(values) & (values > 0) if is_float else values > 0
-        if is_float:
-            seen &= values < SKY_M
+        seen = (values > 0) & (values < SKY_M) if is_float else values > 0
     notes = []
     ends = [] if is_float else [float(np.iinfo(values.dtype).max)]
     for _ in range(3):  # a map may mark several reasons: too near, too far, not matched

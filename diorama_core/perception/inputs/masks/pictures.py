@@ -29,11 +29,6 @@ class MaskMap:
 def paint_masks(masks: Sequence[Bool[np.ndarray, "_ _"]], name: str, what: str) -> MaskMap:
     """Overlapping masks as one map, smaller ones in front.
 
-    Args:
-        masks: of one size.
-        name: of the file or folder.
-        what: the masks are, for messages.
-
     Raises:
         InputError: they have different sizes, or are none or too many.
     """
@@ -79,11 +74,7 @@ CUT_OUT_COLOURS = 256
 
 
 def read_picture(source: Source) -> MaskMap:
-    """The objects of one picture.
-
-    Raises:
-        InputError: it is no picture, damaged, or of a format that blurs colours.
-    """
+    """The objects of one picture."""
     picture = open_picture(source, "mask", MAX_MASK_MEGAPIXELS)
     if picture.format in LOSSY_FORMATS:
         mask = white_on_black(load_pixels(picture, source, "mask"))
@@ -170,12 +161,7 @@ def _palette(picture: Image.Image) -> MaskMap:
 
 
 def without_void(ids: Int32[np.ndarray, "h w"], most: int) -> MaskMap:
-    """Ids without the type's largest number, where it marks pixels that belong to nobody.
-
-    Args:
-        ids: 0 is background.
-        most: the largest number that the file's type has.
-    """
+    """Ids without the largest number of the file's type, `most`, where that marks pixels that belong to nobody."""
     void = ids == most
     others = np.unique(ids[~void & (ids != 0)])
     if not void.any() or not len(others) or others.max() >= SMALL_ID:

@@ -6,6 +6,7 @@ import base64
 import math
 import zlib
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 from xml.etree.ElementTree import Element
 
@@ -15,33 +16,50 @@ from PIL import Image, ImageDraw
 
 from diorama_core.errors import InputError
 from diorama_core.io.bounded import parse_json
-from diorama_core.perception.inputs.boxes.data_sets import is_data_set, photo_of_data_set, rows_of_results
 from diorama_core.perception.inputs.boxes.entry import BoxText, Size
 from diorama_core.perception.inputs.boxes.markup import image_of, is_cvat
-from diorama_core.perception.inputs.boxes.nested import size_in
-from diorama_core.perception.inputs.boxes.table import parse_box_text
-from diorama_core.perception.inputs.boxes.tools import is_via, regions_of
-from diorama_core.perception.inputs.json_values import objects_of, size_of, whole_numbers
+from diorama_core.perception.inputs.boxes.nested import objects_of, size_in, size_of
+from diorama_core.perception.inputs.boxes.reading import parse_box_text
+from diorama_core.perception.inputs.boxes.tools import (
+    is_data_set,
+    is_via,
+    photo_of_data_set,
+    regions_of,
+    rows_of_results,
+)
 from diorama_core.perception.inputs.masks.pictures import MAX_MASK_MEGAPIXELS, MaskMap, one_object, paint_masks
-from diorama_core.perception.inputs.source import Source
+from diorama_core.perception.inputs.source import Folder, Source
 
 MAX_TOTAL_MEGAPIXELS = 600
 """Limit of all masks of a folder or a file together."""
 
 
-def read_segments(source: Source, photo_name: str, photo_size: Size) -> MaskMap:
-    """Run lengths (COCO, SAM), bitmaps (Supervisely) and polygons (COCO, LabelMe, VIA) of JSON.
+@dataclass(frozen=True)
+class MaskContent:
+    """A file or a folder, and the photo that it is of."""
 
-    Args:
-        source: the file.
-        photo_name: by which its segments are found among those of other pictures.
-        photo_size: of what is polygons without a size.
+    given: Folder | Source
+    photo_name: str
+    photo_size: tuple[int, int]
 
-    Raises:
-        InputError: of several pictures none is the photo, or what it holds is damaged.
-    """
+    @property
+    def folder(self) -> Folder:
+        """The folder, of what is one."""
+        assert isinstance(self.given, Folder)
+        return self.given
+
+    @property
+    def source(self) -> Source:
+        """The file, of what is no folder."""
+        assert isinstance(self.given, Source)
+        return self.given
+
+
+def read_segments(content: MaskContent) -> MaskMap:
+    """Run lengths (COCO, SAM), bitmaps (Supervisely) and polygons (COCO, LabelMe, VIA) of JSON."""
+    source, photo_size = content.source, content.photo_size
     document = parse_json(source.data, source.name, InputError, advice="masks are pictures, arrays or COCO's segments")
-    document, size = _photo_annotations(BoxText(source, document, photo_name, photo_size))
+    document, size = _photo_annotations(BoxText(source, document, content.photo_name, photo_size))
     masks: list[Bool[np.ndarray, "h w"]] = []
     for segment in _segments(document):
         mask = _mask(segment, size or photo_size, source.name)
@@ -52,10 +70,10 @@ def read_segments(source: Source, photo_name: str, photo_size: Size) -> MaskMap:
     return paint_masks(masks, source.name, "segments")
 
 
-def is_polygon_list(source: Source) -> bool:
+def is_polygon_list(content: MaskContent) -> bool:
     """Whether it is text of YOLO's form with polygons."""
     try:
-        rows = [line.split() for line in source.data[:4_000_000].decode().splitlines() if line.strip()]
+        rows = [line.split() for line in content.source.data[:4_000_000].decode().splitlines() if line.strip()]
         numbers = [[float(v) for v in row] for row in rows]
     except ValueError:
         return False
@@ -63,8 +81,9 @@ def is_polygon_list(source: Source) -> bool:
     return bool(numbers) and polygons and all(min(r[1:]) >= -0.1 and max(r[1:]) <= 1.1 for r in numbers)
 
 
-def read_polygon_list(source: Source, photo_size: Size) -> MaskMap:
+def read_polygon_list(content: MaskContent) -> MaskMap:
     """Polygons in shares of the picture."""
+    source, photo_size = content.source, content.photo_size
     masks = []
     for line in source.data.decode().splitlines():
         shares = [float(v) for v in line.split()[1:]]
@@ -76,16 +95,15 @@ def read_polygon_list(source: Source, photo_size: Size) -> MaskMap:
 
 def _photo_annotations(text: BoxText) -> tuple[Any, Size | None]:
     """Annotations of the photo in a document, and the size of the annotated picture where it states one."""
-    document: Any = text.document
     if is_data_set(text):
         image, annotations = photo_of_data_set(text)
-        return annotations, None if image is None else size_of(image.get("width"), image.get("height"))
+        return annotations, size_of(image.get("width"), image.get("height"))
     if is_via(text):
         return regions_of(text), None
-    rows = objects_of(document)
+    rows = objects_of(text.document)
     if rows and all("image_id" in r for r in rows):
         return rows_of_results(rows, text), None
-    return document, size_in(document)
+    return text.document, size_in(text.document)
 
 
 def _mask(segment: Any, size: Size, name: str) -> Bool[np.ndarray, "h w"]:
@@ -179,18 +197,15 @@ def fill_polygon(rings: list[Any], size: Size, name: str) -> Bool[np.ndarray, "h
     return np.asarray(canvas) > 0
 
 
-def is_markup(source: Source) -> bool:
+def is_markup(content: MaskContent) -> bool:
     """Whether it is XML."""
-    return source.data.lstrip(b"\xef\xbb\xbf \r\n\t")[:1] == b"<"
+    return content.source.data.lstrip(b"\xef\xbb\xbf \r\n\t")[:1] == b"<"
 
 
-def read_cvat_masks(source: Source, photo_name: str, photo_size: Size) -> MaskMap:
-    """The polygons and masks of the photo in CVAT's XML.
-
-    Raises:
-        InputError: it is another XML, of other pictures only, without masks, or damaged.
-    """
-    text = parse_box_text(source, photo_name, photo_size)
+def read_cvat_masks(content: MaskContent) -> MaskMap:
+    """The polygons and masks of the photo in CVAT's XML."""
+    source, photo_size = content.source, content.photo_size
+    text = parse_box_text(source, content.photo_name, photo_size)
     image = image_of(text.document.findall("image"), text) if isinstance(text.document, Element) else None
     if not is_cvat(text) or image is None:
         raise InputError(f"{source.name}: this XML holds no masks; give CVAT's, JSON with polygons, or pictures")
@@ -222,6 +237,13 @@ def _figure_mask(figure: Element, size: Size, name: str) -> Bool[np.ndarray, "h 
     return mask
 
 
+def whole_numbers(value: object) -> list[int]:
+    """The entries of a list of numbers; raises `ValueError` where it is no such list."""
+    if not isinstance(value, list) or not all(isinstance(v, int | float) for v in value):
+        raise ValueError("no list of numbers")
+    return [int(v) for v in value]
+
+
 def decode_runs(segment: Mapping[str, Any], name: str) -> Bool[np.ndarray, "h w"]:
     """The mask of an object with `size` (height, width) and `counts`.
 
@@ -243,11 +265,9 @@ def decode_runs(segment: Mapping[str, Any], name: str) -> Bool[np.ndarray, "h w"
 
 
 def decode_brush(segment: Mapping[str, Any], name: str) -> Bool[np.ndarray, "h w"]:
-    """The mask of Label Studio's brush: bytes of a packed picture of four channels, of which the last is the mask.
+    """The mask of Label Studio's brush: a picture of four channels, of which the last is the mask.
 
-    Args:
-        segment: `rle`, a list of bytes, and `size` (height, width).
-        name: of the file.
+    Its packed bytes are a list under `rle`, beside `size` (height, width).
 
     Raises:
         InputError: the bytes do not make up the size.

@@ -76,13 +76,10 @@ def _without_blur(off: np.ndarray, margins: Margins) -> Margins:
     """The margins with the mixed lines where border and photo meet, of the sides that have a border."""
     height, width = off.shape
     left, top, right, bottom = margins
-    mixed = [
-        _count_mixed_lines(off[top:, left : width - right]) if top else 0,
-        _count_mixed_lines(off[: height - bottom, left : width - right][::-1]) if bottom else 0,
-        _count_mixed_lines(off[top : height - bottom, left:].T) if left else 0,
-        _count_mixed_lines(off[top : height - bottom, : width - right].T[::-1]) if right else 0,
-    ]
-    return left + mixed[2], top + mixed[0], right + mixed[3], bottom + mixed[1]
+    rows, columns = off[top : height - bottom], off[:, left : width - right]
+    lines = (rows[:, left:].T, columns[top:], rows[:, : width - right].T[::-1], columns[: height - bottom][::-1])
+    left, top, right, bottom = (m + (_count_mixed_lines(inner) if m else 0) for m, inner in zip(margins, lines))
+    return left, top, right, bottom
 
 
 def _count_mixed_lines(off: np.ndarray) -> int:
@@ -157,11 +154,6 @@ class PhotoFrame:
         self, name: str, what: str, values: Shaped[np.ndarray, "h w *c"]
     ) -> tuple[Shaped[np.ndarray, "h2 w2 *c"], tuple[str, ...]]:
         """A map as it lies over the photo without its border, whether it came with it, or unturned; and what was done.
-
-        Args:
-            name: of the file, for messages.
-            what: the map is, for messages.
-            values: h rows and w columns, in any number of channels.
 
         Raises:
             InputError: its proportions are neither those of the photo nor of its stored pixels.

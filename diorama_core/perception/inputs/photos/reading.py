@@ -14,9 +14,17 @@ from PIL import Image
 from diorama_core.artefacts import Photo
 from diorama_core.errors import InputError, SphericalPhotoError
 from diorama_core.perception.camera.exif import focal_from_exif
-from diorama_core.perception.inputs.photos.decoding import dark_colours, eight_bits, is_heif, load_pixels, open_picture
+from diorama_core.perception.inputs.photos.decoding import (
+    PhotoFile,
+    dark_colours,
+    eight_bits,
+    is_heif,
+    largest_picture,
+    load_pixels,
+    open_picture,
+    raw_kind,
+)
 from diorama_core.perception.inputs.photos.frame import PhotoFrame, plain_borders
-from diorama_core.perception.inputs.photos.raw import largest_picture, raw_kind
 from diorama_core.perception.inputs.source import Form, Source, form_of
 
 MIN_SIDE_PX = 32
@@ -235,47 +243,21 @@ def _darkness(rgb: UInt8[np.ndarray, "h w 3"]) -> tuple[str, ...]:
     return ("the photo is nearly black; little can be seen in it",)
 
 
-@dataclass(frozen=True)
-class PhotoFile:
-    """The picture of a file, as a file of its own."""
-
-    source: Source
-    orientation: int | None = None
-    """EXIF orientation of the file around it; None where the picture's own counts."""
-    notes: tuple[str, ...] = ()
-
-
-def _is_raw(source: Source) -> bool:
-    return raw_kind(source.data) is not None
-
-
-def _is_heif(source: Source) -> bool:
-    return is_heif(source.data)
-
-
-def _is_anything(source: Source) -> bool:
-    return True
-
-
-def _raw(source: Source) -> PhotoFile:
-    return PhotoFile(*largest_picture(source, raw_kind(source.data) or "camera raw"))
-
-
 PHOTO_FORMS: tuple[Form[Source, PhotoFile], ...] = (
     Form(
         "camera raw (DNG, CR2, CR3, NEF, ARW, RAF, RW2, ORF)",
         "cameras, phones",
         "the largest picture within; developed where that is a thumbnail and `rawpy` is installed (`diorama[raw]`)",
-        _is_raw,
-        _raw,
+        lambda source: raw_kind(source.data) is not None,
+        largest_picture,
     ),
-    Form("HEIC, HEIF", "iPhones, Samsung", "the main picture, upright", _is_heif, PhotoFile),
+    Form("HEIC, HEIF", "iPhones, Samsung", "the main picture, upright", lambda source: is_heif(source.data), PhotoFile),
     Form(
         "JPEG, PNG, WebP, AVIF, TIFF, BMP, GIF, PPM, JPEG 2000",
         "everything else",
         "turned by its EXIF; 10, 12 and 14 bits stretched; plain borders cut off; of several pages the largest; "
         "a 360 degree photo alone is [a whole room](many-photos.md#one-360-degree-photo); sweep panoramas are refused",
-        _is_anything,
+        lambda _: True,
         PhotoFile,
     ),
 )
@@ -314,12 +296,7 @@ def check_perspective(name: str, picture: Image.Image, exif: Mapping[int, Any], 
 
 
 def check_sphere(name: str, picture: Image.Image) -> None:
-    """Raise `InputError` where a picture is not all of a sphere.
-
-    Args:
-        name: of the file.
-        picture: upright, decoded.
-    """
+    """Raise `InputError` where an upright picture is not all of a sphere."""
     if not _SPHERE_ASPECT[0] <= picture.width / picture.height <= _SPHERE_ASPECT[1]:
         size = f"{picture.width} x {picture.height}"
         raise InputError(f"{name}: {size} is not 2 : 1, so it is no whole 360 degree photo; stitch all directions")

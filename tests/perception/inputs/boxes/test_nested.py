@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from diorama_core.perception.inputs.boxes.nested import class_names_in, lists_in, pictures_in
+from diorama_core.perception.inputs.boxes.nested import class_names_in, lists_in, objects_of, pictures_in, size_of
 
 ROWS = [{"bbox": [1, 2, 30, 40], "class": "chair"}]
 BARE = [{"bbox": [1, 2, 30, 40]}]
@@ -38,3 +38,16 @@ def test_pictures_are_told_from_kinds(document: object, count: int) -> None:
 )  # fmt: skip
 def test_names_of_class_numbers(names: object) -> None:
     assert class_names_in(names) == {0: "sofa", 1: "chair"}
+
+
+def test_only_lists_of_objects_are_lists_of_objects() -> None:
+    assert objects_of([{"a": 1}]) == [{"a": 1}]
+    others: tuple[object, ...] = (None, {}, [], "text", [1], [{"a": 1}, None])
+    for other in others:
+        assert objects_of(other) == []
+
+
+def test_sizes_are_two_sides_of_a_picture() -> None:
+    assert size_of(640, 480.0) == (640, 480)
+    for width, height in ((None, 480), ("640", 480), (1, 480), (True, 480), (1e9, 480), (float("nan"), 480)):
+        assert size_of(width, height) is None

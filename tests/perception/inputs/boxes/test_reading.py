@@ -8,47 +8,19 @@ from hypothesis import strategies as st
 
 from diorama_core.errors import InputError
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.perception.inputs.boxes.dictionaries import word_of
+from diorama_core.perception.inputs.boxes.nested import word_of
 from diorama_core.perception.inputs.boxes.reading import read_boxes, understand_word
 from diorama_core.perception.inputs.source import Source
 from tests.perception.inputs.files import HEIGHT, WIDTH, box, boxes_json, decoded, encoded, picture, refusal
 
-SIZE = (96, 64)
-
-
-def boxes(*records, original=SIZE, photo=SIZE):
-    return read_boxes(Source(boxes_json(*records), "boxes.json"), decoded(*photo, original=original))
-
-
-def test_boxes_are_scaled_with_the_photo() -> None:
-    (found,), notes = boxes(box(100, 80, 400, 240), original=(960, 640))
-    assert found.box == pytest.approx((10, 8, 40, 24))
-    assert (found.category, found.label, found.score, notes) == ("chair", "chair", 1.0, ())
-
 
 def test_parts_of_the_room_are_left_out_and_far_boxes_clipped_with_a_note() -> None:
-    found, notes = boxes(box(0, 0, 90, 60, word="wall"), box(-30, 5, 40, 200, word="night_stand"))
+    given = boxes_json(box(0, 0, 90, 60, word="wall"), box(-30, 5, 40, 200, word="night_stand"))
+    found, notes = read_boxes(Source(given, "boxes.json"), decoded())
     assert [b.box for b in found] == [(0, 5, 40, 64)]
     assert found[0].label == "night stand"
     assert "part of the room itself" in notes[0]
     assert "was clipped" in notes[1]
-
-
-@pytest.mark.parametrize(
-    ("bbox", "reason"),
-    [((10, 10, 10, 40), "has no area"), ((40, 10, 10, 40), "has no area"), ((200, 10, 300, 40), "outside the picture")],
-)
-def test_impossible_boxes_are_named_by_number(bbox, reason) -> None:
-    with pytest.raises(InputError, match=f"box 1 .*{reason}"):
-        boxes(box(10, 10, 40, 40), box(*bbox))
-
-
-@pytest.mark.parametrize(
-    "data", [b"{", b'{"bbox": [1,2,3,4]}', b'[{"bbox": [1,2,3]}]', b'[{"bbox": [1,2,3,"NaN"]}]', b'[{"class": "x"}]']
-)
-def test_what_is_no_list_of_boxes_is_refused_with_an_example(data: bytes) -> None:
-    with pytest.raises(InputError, match="boxes are a JSON list"):
-        read_boxes(Source(data, "boxes.json"), decoded())
 
 
 def test_unknown_words_are_understood_as_the_nearest_and_said() -> None:
@@ -73,16 +45,6 @@ class TestBoxes:
         assert [b.label for b in read.inputs.boxes] == ["night stand", "couches", "object", "zorgblatt"]
         assert any("zorgblatt" in w for w in read.warnings)
 
-    def test_the_room_itself_is_no_object(self) -> None:
-        read = read_inputs(self.photo, boxes=boxes_json(box(1, 1, 20, 20, word="Wall"), box(1, 1, 20, 20)))
-        assert len(read.inputs.boxes) == 1
-        assert any("Wall" in w for w in read.warnings)
-
-    def test_partly_outside_is_clipped_and_said(self) -> None:
-        read = read_inputs(self.photo, boxes=boxes_json(box(-30, 10, 40, 200)))
-        assert read.inputs.boxes[0].box == (0, 10, 40, HEIGHT)
-        assert any("clipped" in w for w in read.warnings)
-
     def test_a_pixel_over_the_edge_is_not_worth_a_word(self) -> None:
         assert read_inputs(self.photo, boxes=boxes_json(box(0, 0, WIDTH + 1, 20))).warnings == ()
 
@@ -90,8 +52,10 @@ class TestBoxes:
         ("data", "word"),
         [
             (boxes_json(box(1, 1, 20, 20), box(200, 10, 300, 40)), "box 1"),
+            (boxes_json(box(200, 10, 300, 40)), "outside the picture"),
             (boxes_json(box(20, 1, 5, 20)), "box 0"),
             (boxes_json(box(5, 5, 5, 5)), "no area"),
+            (b"[{", "boxes are a JSON list"),
             (b"[{", "not valid JSON"),
             (b"", "0 bytes"),
             (b"\xff\xfe\x00", "no text"),

@@ -26,7 +26,6 @@ def in_bytes(values: np.ndarray, *channels: int) -> np.ndarray:
 def test_bytes_of_one_number_are_put_together(per_metre: float, channels: tuple[int, ...]) -> None:
     values = np.round(DEPTH * per_metre).astype(np.int64)
     found = depth_of_colours(in_bytes(values, *channels))
-    assert found is not None
     assert (found[0] == values).all()
     words = ", ".join(["red", "green", "blue"][k] for k in channels)
     assert words in found[1][0]

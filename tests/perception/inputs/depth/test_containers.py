@@ -21,15 +21,15 @@ from tests.perception.inputs.files import encoded, npy
 ROW = ",".join(str(k / 10) for k in range(30))
 
 
-def text_of(*rows: str) -> Source:
-    return Source("\n".join(rows).encode(), "d.csv")
+def text_of(*rows: str) -> DepthContent:
+    return DepthContent(Source("\n".join(rows).encode(), "d.csv"), (4, 3))
 
 
 def test_rows_of_equal_length_are_a_map() -> None:
-    values = read_number_table(text_of(*[ROW] * 30))
+    values = read_number_table(text_of(*[ROW] * 30)).values
     assert values.shape == (30, 30)
     assert values[0, 29] == 2.9
-    assert np.isnan(read_number_table(text_of(*[ROW.replace("0.0", "nan")] * 30))[0, 0])
+    assert np.isnan(read_number_table(text_of(*[ROW.replace("0.0", "nan")] * 30)).values[0, 0])
 
 
 @pytest.mark.parametrize("rows", [[ROW] * 5, ["0 0.1 0.2 0.3 0.4"] * 40, [ROW, *[ROW + ",1"] * 30], ["a" + ROW] * 30])
@@ -49,7 +49,6 @@ MILLIMETRES = (DEPTH * 1000).astype(np.uint16)
 def read(data: bytes, name: str = "depth") -> RawDepth:
     content = DepthContent(Source(data, name), (WIDTH * 4, HEIGHT * 4))
     form = form_of(DEPTH_FORMS, content)
-    assert form is not None
     return form.read(content)
 
 

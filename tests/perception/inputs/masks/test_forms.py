@@ -16,10 +16,15 @@ from PIL import Image
 
 from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.masks.pictures import paint_masks, read_picture, without_void
-from diorama_core.perception.inputs.masks.reading import read_masks
-from diorama_core.perception.inputs.masks.segments import decode_runs, is_markup, read_segments
-from diorama_core.perception.inputs.masks.table import MASK_FORMS, MaskContent, read_arrays, read_folder_of_masks
+from diorama_core.perception.inputs.masks.pictures import paint_masks, without_void
+from diorama_core.perception.inputs.masks.reading import (
+    MASK_FORMS,
+    MaskContent,
+    read_arrays,
+    read_folder_of_masks,
+    read_masks,
+)
+from diorama_core.perception.inputs.masks.segments import decode_runs, whole_numbers
 from diorama_core.perception.inputs.source import Folder, Source, form_of, read_folder
 from tests.perception.inputs.files import decoded, encoded, npy
 
@@ -174,16 +179,15 @@ BITMAP = {
     ],
 )  # fmt: skip
 def test_polygons_and_bitmaps_of_annotation_tools(document: object) -> None:
-    source = Source(json.dumps(document).encode(), "m")
-    np.testing.assert_array_equal(read_segments(source, "photo.png", (WIDTH, HEIGHT)).values > 0, LARGE)
+    np.testing.assert_array_equal(found(Source(json.dumps(document).encode(), "m")) > 0, LARGE)
 
 
 def test_segments_of_other_pictures_are_refused() -> None:
     with pytest.raises(InputError, match="is of 2 pictures, none of them called"):
-        read_segments(Source(json.dumps(DATA_SET).encode(), "m"), "c.png", (WIDTH, HEIGHT))
+        found(Source(json.dumps(DATA_SET).replace("photo", "c").encode(), "m"))
     broken = {"objects": [{"bitmap": {**BITMAP, "origin": [100, 10]}}]}
     with pytest.raises(InputError, match="beyond the picture"):
-        read_segments(Source(json.dumps(broken).encode(), "m"), "c.png", (WIDTH, HEIGHT))
+        found(Source(json.dumps(broken).encode(), "m"))
 
 
 def test_polygons_of_yolo() -> None:
@@ -203,8 +207,6 @@ def cvat(figures: str) -> Source:
 
 
 def test_cvat_s_polygons_and_masks() -> None:
-    assert is_markup(cvat(""))
-    assert not is_markup(Source(b"[]", "a.json"))
     polygons = [";".join(f"{x},{y}" for x, y in corners_of(m)) for m in (LARGE, SMALL)]
     np.testing.assert_array_equal(found(cvat("".join(f'<polygon label="a" points="{p}"/>' for p in polygons))), IDS)
     (left, top), _, (right, bottom), _ = corners_of(SMALL)
@@ -333,8 +335,6 @@ def test_forms_and_refusals() -> None:
             found(given)
     with pytest.raises(InputError, match="different sizes"):
         paint_masks([np.ones((2, 2), bool), np.ones((3, 2), bool)], "m", "masks")
-    with pytest.raises(InputError, match="exact colours"):
-        read_picture(Source(encoded(Image.fromarray(RGB), "JPEG"), "m.jpg"))
 
 
 def test_pieces_within_an_object_are_its_own_and_others_are_specks() -> None:
@@ -346,3 +346,10 @@ def test_pieces_within_an_object_are_its_own_and_others_are_specks() -> None:
     values, _, notes = read_masks(picture(Image.fromarray(large)), (), decoded(WIDTH, HEIGHT))
     np.testing.assert_array_equal(values, expected)
     assert notes == ("1 specks of the masks were dropped",)
+
+
+def test_only_lists_of_numbers_are_whole_numbers() -> None:
+    assert whole_numbers([3, 4.0]) == [3, 4]
+    for other in (None, "34", 3, [3, None], [float("nan")]):
+        with pytest.raises(ValueError, match=r"."):
+            whole_numbers(other)

@@ -12,9 +12,8 @@ from PIL import Image
 
 from diorama_core.errors import InputError, SphericalPhotoError
 from diorama_core.perception.inputs import read_inputs
-from diorama_core.perception.inputs.photos.decoding import eight_bits
+from diorama_core.perception.inputs.photos.decoding import eight_bits, raw_kind
 from diorama_core.perception.inputs.photos.frame import PhotoFrame, plain_borders
-from diorama_core.perception.inputs.photos.raw import raw_kind
 from diorama_core.perception.inputs.photos.reading import PHOTO_FORMS, check_perspective
 from diorama_core.perception.inputs.source import Source, form_of
 from tests.perception.inputs.files import box, boxes_json, depth_png, encoded, npy
@@ -63,11 +62,8 @@ def test_everything_given_moves_with_the_cut_frame() -> None:
     np.testing.assert_array_equal(inputs.photo.rgb, NOISE)
     assert inputs.photo.offset == (10, 10)
     assert inputs.boxes[0].box == (30, 20, 80, 50)
-    assert inputs.depth_m is not None
     assert (inputs.depth_m == 3.0).all()
-    assert inputs.instances is not None
     assert inputs.instances[20:50, 30:80].all()
-    assert inputs.intrinsics is not None
     assert (inputs.intrinsics.cx, inputs.intrinsics.cy) == (80.0, 60.0)
 
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.perception.inputs.boxes import data_sets, lines, lists, markup, tools
-from diorama_core.perception.inputs.boxes.dictionaries import box_of, word_of
-from diorama_core.perception.inputs.boxes.reading import read_boxes
-from diorama_core.perception.inputs.boxes.table import BOX_FORMS, parse_box_text
+from diorama_core.perception.inputs.boxes import lines, lists, markup, tools
+from diorama_core.perception.inputs.boxes.entry import BoxText
+from diorama_core.perception.inputs.boxes.nested import box_of, word_of
+from diorama_core.perception.inputs.boxes.reading import BOX_FORMS, parse_box_text, read_boxes
 from diorama_core.perception.inputs.source import Source, form_of
 from tests.perception.inputs.files import decoded
 
@@ -39,30 +41,15 @@ COCO = {
         for k, b in enumerate(BOXES)
     ],
 }
-STUDIO = [
-    {
-        "data": {"image": "photo.png"},
-        "annotations": [
-            {
-                "result": [
-                    {
-                        "original_width": 400,
-                        "original_height": 300,
-                        "type": "rectanglelabels",
-                        "value": {
-                            "x": b[0] / 4,
-                            "y": b[1] / 3,
-                            "width": (b[2] - b[0]) / 4,
-                            "height": (b[3] - b[1]) / 3,
-                            "rectanglelabels": [b[4]],
-                        },
-                    }
-                    for b in BOXES
-                ]
-            }
-        ],
+STUDIO_RESULTS = rows(
+    lambda x1, y1, x2, y2, w: {
+        "original_width": 400,
+        "original_height": 300,
+        "type": "rectanglelabels",
+        "value": {"x": x1 / 4, "y": y1 / 3, "width": (x2 - x1) / 4, "height": (y2 - y1) / 3, "rectanglelabels": [w]},
     }
-]
+)
+STUDIO = [{"data": {"image": "photo.png"}, "annotations": [{"result": STUDIO_RESULTS}]}]
 VIA = {
     "photo.png1234": {
         "filename": "photo.png",
@@ -109,22 +96,17 @@ CREATE_ML = {
         }
     ),
 }
+AMAZON = rows(
+    lambda x1, y1, x2, y2, _: {
+        "BoundingBox": {"Left": x1 / 400, "Top": y1 / 300, "Width": (x2 - x1) / 400, "Height": (y2 - y1) / 300}
+    }
+)
 REKOGNITION = {
-    "Labels": [
-        {
-            "Name": "x",
-            "Instances": rows(
-                lambda x1, y1, x2, y2, w: {
-                    "Name": w,
-                    "BoundingBox": {
-                        "Left": x1 / 400, "Top": y1 / 300, "Width": (x2 - x1) / 400, "Height": (y2 - y1) / 300,
-                    },
-                }
-            ),
-        }
-    ]
-}  # fmt: skip
-COLUMNS = {"boxes": [list(b[:4]) for b in BOXES], "labels": ["chair", "sofa"], "scores": [0.9, 0.8]}
+    "Labels": [{"Name": "x", "Instances": [{"Name": b[4], **i} for b, i in zip(BOXES, AMAZON, strict=True)]}]
+}
+BY_KIND = {"Labels": [{"Name": b[4], "Instances": [i]} for b, i in zip(BOXES, AMAZON, strict=True)]}
+CORNERS_ONLY = [list(b[:4]) for b in BOXES]
+COLUMNS = {"boxes": CORNERS_ONLY, "labels": ["chair", "sofa"], "scores": [0.9, 0.8]}
 TABLE = "filename,width,height,class,xmin,ymin,xmax,ymax\n" + "\n".join(
     rows(lambda x1, y1, x2, y2, w: f"photo.png,400,300,{w},{x1},{y1},{x2},{y2}")
 )
@@ -136,32 +118,16 @@ NAMED = rows(lambda x1, y1, x2, y2, w: {"bbox": [x1, y1, x2, y2], "class": w})
 CORNERS = rows(lambda x1, y1, x2, y2, w: {"topLeft": {"x": x1, "y": y1}, "bottomRight": {"x": x2, "y": y2}, "name": w})
 TF_ROWS = {"detection_boxes": rows(lambda a, b, c, d, _: [b / 300, a / 400, d / 300, c / 400]),
            "detection_class_entities": ["chair", "sofa"]}  # fmt: skip
-BY_KIND = {
-    "Labels": rows(
-        lambda a, b, c, d, w: {
-            "Name": w,
-            "Instances": [{"BoundingBox": {"Left": a / 400, "Top": b / 300, "Width": (c - a) / 400,
-                                           "Height": (d - b) / 300}}],
-        }
-    )
-}  # fmt: skip
 MANIFEST = {
     "bb": {"annotations": rows(lambda a, b, c, d, w: {"left": a, "top": b, "width": c - a, "height": d - b,
                                                       "class_id": len(w) - 4})},
     "bb-metadata": {"class-map": {"1": "chair", "0": "sofa"}},
 }  # fmt: skip
+LABEL_IDS = [{"type": "bbox", "label_id": k, "bbox": sized(*b[:4])} for k, b in enumerate(BOXES)]
 DATUMARO = {
     "categories": {"label": {"labels": [{"name": "chair"}, {"name": "sofa"}]}},
-    "items": [
-        {
-            "id": "photo",
-            "annotations": [
-                {"type": "bbox", "label_id": k, "bbox": sized(*b[:4])} for k, b in enumerate(BOXES)
-            ],
-            "format": "xywh",
-        }
-    ],
-}  # fmt: skip
+    "items": [{"id": "photo", "annotations": LABEL_IDS, "format": "xywh"}],
+}
 VIA_TABLE = "filename,region_shape_attributes,region_attributes\n" + "\n".join(
     rows(
         lambda a, b, c, d, w: (
@@ -184,7 +150,7 @@ FORMS = [
     ("list of boxes", [{"image": "a/b.png", **r} for r in OTHERS] + [{"image": "c/photo.png", **r} for r in NAMED]),
     ("columns of boxes", TF_ROWS),
     ("columns of boxes", [{"file": "b.png", "boxes": [[1, 1, 9, 9]], "labels": ["bed"]},
-                          {"file": "photo.png", "boxes": [list(b[:4]) for b in BOXES], "labels": ["chair", "sofa"]}]),
+                          {"file": "photo.png", **COLUMNS}]),
     ("object with a list of boxes", BY_KIND),
     ("object with a list of boxes", MANIFEST),
     ("object with a list of boxes", DATUMARO),
@@ -202,7 +168,7 @@ FORMS = [
     ("LabelMe", LABELME),
     ("Label Studio", STUDIO),
     ("VGG Image Annotator", VIA),
-    ("list of boxes", rows(lambda x1, y1, x2, y2, w: {"bbox": [x1, y1, x2, y2], "class": w})),
+    ("list of boxes", NAMED),
     ("list of boxes", rows(lambda a, b, c, d, w: {"label": w, "box": {"xmin": a, "ymin": b, "xmax": c, "ymax": d}})),
     ("list of boxes", rows(lambda a, b, c, d, w: {"box_2d": [b / 0.3, a / 0.4, d / 0.3, c / 0.4], "label": w})),
     (
@@ -221,30 +187,24 @@ FORMS = [
 ]  # fmt: skip
 
 
-RECOGNISED_BY = {
-    "COCO data set": data_sets.is_data_set,
-    "LabelMe": tools.is_labelme,
-    "Label Studio": tools.is_label_studio,
-    "VGG Image Annotator": tools.is_via,
-    "list of boxes": lists.is_list,
-    "columns of boxes": lists.is_columns,
-    "object with a list of boxes": lists.is_wrapped,
-    "Pascal VOC": markup.is_voc,
-    "CVAT": markup.is_cvat,
-    "table of boxes": lines.is_table,
-    "words and numbers": lines.is_words,
-    "boxes by name": lists.is_keyed,
-}
+@pytest.mark.parametrize(
+    ("recognises", "name"),
+    [(tools.is_labelme, "LabelMe"), (lists.is_columns, "columns of boxes"), (markup.is_voc, "Pascal VOC"),
+     (lines.is_words, "words and numbers")],
+)  # fmt: skip
+def test_a_form_knows_its_own_files(recognises: Callable[[BoxText], bool], name: str) -> None:
+    own = [parse_box_text(Source(content(d), "file"), "photo.png", SIZE) for n, d in FORMS if n == name]
+    assert own
+    assert all(recognises(text) for text in own)
 
 
-@pytest.mark.parametrize("name", RECOGNISED_BY)
-def test_each_form_knows_its_own_files(name: str) -> None:
-    for written, document in FORMS:
-        text = parse_box_text(Source(content(document), "file"), "photo.png", SIZE)
-        if written == name:
-            assert RECOGNISED_BY[name](text)
-    for strange in ("[]", "{}", "<a/>", "one line of text", "[[1]]", '[{"a": 1}]', '{"shapes": 1}'):
-        assert not RECOGNISED_BY[name](parse_box_text(Source(strange.encode(), "file"), "photo.png", SIZE))
+@pytest.mark.parametrize("strange", ["{}", "<a/>", "one line of text", "[[1]]", '[{"a": 1}]', '{"shapes": 1}'])
+def test_no_form_knows_strange_files(strange: str) -> None:
+    assert form_of(BOX_FORMS, parse_box_text(Source(strange.encode(), "file"), "photo.png", SIZE)) is None
+
+
+def read(document: object) -> tuple[tuple[LabelledBox, ...], tuple[str, ...]]:
+    return read_boxes(Source(content(document), "file"), decoded(*SIZE))
 
 
 def content(document: object) -> bytes:
@@ -273,13 +233,13 @@ def test_boxes_of_other_pictures_are_refused(document: object) -> None:
 def test_names_of_pictures_as_programs_change_them(name: str) -> None:
     other = {"id": 8, "file_name": "other.png", "width": 10, "height": 10}
     document = {**COCO, "images": [{**COCO["images"][0], "file_name": name}, other]}
-    assert len(read_boxes(Source(content(document), "c.json"), decoded(*SIZE))[0]) == 2
+    assert len(read(document)[0]) == 2
 
 
 def test_a_photo_without_boxes_among_others_is_said() -> None:
     document = [{"name": "a.png", "labels": NAMED}, {"name": "photo.png", "labels": []}]
     with pytest.raises(InputError, match="holds no box of the photo"):
-        read_boxes(Source(content(document), "b"), decoded(*SIZE))
+        read(document)
 
 
 def test_utf_16_is_text() -> None:
@@ -288,11 +248,9 @@ def test_utf_16_is_text() -> None:
 
 @pytest.mark.parametrize(("name", "document"), FORMS, ids=[f"{k}-{n}" for k, (n, _) in enumerate(FORMS)])
 def test_every_form_gives_the_same_boxes(name: str, document: object) -> None:
-    source = Source(content(document), "file")
-    form = form_of(BOX_FORMS, parse_box_text(source, "photo.png", SIZE))
-    assert form is not None
+    form = form_of(BOX_FORMS, parse_box_text(Source(content(document), "file"), "photo.png", SIZE))
     assert form.name == name
-    found, _ = read_boxes(source, decoded(*SIZE))
+    found, _ = read(document)
     assert [b.label for b in found] == ["chair", "sofa"]
     for box, (*expected, _) in zip(found, BOXES, strict=True):
         assert box.box == pytest.approx(expected, abs=1e-6)
@@ -328,11 +286,11 @@ def test_coco_results_are_sized_and_say_where_names_are(tmp_path: Path) -> None:
 def test_a_data_set_of_many_pictures_gives_the_photo_s() -> None:
     other = {"id": 8, "file_name": "other.png", "width": 10, "height": 10}
     many = {**COCO, "images": [*COCO["images"], other]}
-    found, notes = read_boxes(Source(json.dumps(many).encode(), "c.json"), decoded(*SIZE))
+    found, notes = read(many)
     assert len(found) == 2
     assert "2 pictures" in notes[0]
     with pytest.raises(InputError, match="none of them called"):
-        read_boxes(Source(json.dumps({**many, "images": [other, other]}).encode(), "c.json"), decoded(*SIZE))
+        read({**many, "images": [other, other]})
 
 
 def test_names_under_unusual_keys_are_used_or_named() -> None:
@@ -340,11 +298,11 @@ def test_names_under_unusual_keys_are_used_or_named() -> None:
         {"bbox": [1, 1, 60, 60], "thing": "chair", "id": "a17"},
         {"bbox": [9, 9, 80, 80], "thing": "sofa", "id": "b2"},
     ]
-    found, notes = read_boxes(Source(json.dumps(known).encode(), "b.json"), decoded(*SIZE))
+    found, notes = read(known)
     assert [b.label for b in found] == ["chair", "sofa"]
     assert "'thing'" in notes[0]
     unknown = [{"bbox": [1, 1, 60, 60], "note": "qwxz"}]
-    found, notes = read_boxes(Source(json.dumps(unknown).encode(), "b.json"), decoded(*SIZE))
+    found, notes = read(unknown)
     assert found[0].label == "object"
     assert "'note'" in notes[0]
 
@@ -352,7 +310,7 @@ def test_names_under_unusual_keys_are_used_or_named() -> None:
 @pytest.mark.parametrize("document", ["<svg/>", "hello world", {"a": 1}, [1, 2], [{"x": "y"}]])
 def test_what_is_no_file_of_boxes_is_refused_with_an_example(document: object) -> None:
     with pytest.raises(InputError, match="boxes are a JSON list"):
-        read_boxes(Source(content(document), "b"), decoded(*SIZE))
+        read(document)
 
 
 def test_one_annotation_in_anybody_s_words() -> None:
@@ -364,28 +322,21 @@ def test_one_annotation_in_anybody_s_words() -> None:
     assert box_of({"name": "x"}, "") is None
 
 
-def words_of(document: object) -> list[str]:
-    source = Source(json.dumps(document).encode(), "a.json")
-    return [b.label for b in read_boxes(source, decoded(*SIZE))[0]]
-
-
-def test_words_without_the_scores_behind_them() -> None:
-    boxes = [list(b[:4]) for b in BOXES]
-    assert words_of({"boxes": boxes, "labels": ["chair(0.45)", "sofa 0.87"]}) == ["chair", "sofa"]
-    assert words_of([{"bbox": b, "class": w} for b, w in zip(boxes, ("chair (.5)", "sofa 2"), strict=True)]) == [
-        "chair",
-        "sofa 2",
-    ]
-
-
-def test_the_background_in_a_list_of_boxes_is_none() -> None:
-    rows = [{"value": 0, "label": "background"}, *({"label": b[4], "box": list(b[:4])} for b in BOXES)]
-    assert words_of(rows) == ["chair", "sofa"]
-
-
-def test_class_names_beside_class_numbers_of_another_count() -> None:
-    document = {"pred_boxes": [list(b[:4]) for b in BOXES], "pred_classes": [0, 2]}
-    assert words_of({**document, "class_names": ["chair", "lamp", "sofa"]}) == ["chair", "sofa"]
+@pytest.mark.parametrize(
+    ("document", "words"),
+    [
+        ({"boxes": CORNERS_ONLY, "labels": ["chair(0.45)", "sofa 0.87"]}, ["chair", "sofa"]),
+        ([{"bbox": CORNERS_ONLY[0], "class": "chair (.5)"}, {"bbox": CORNERS_ONLY[1], "class": "sofa 2"}],
+         ["chair", "sofa 2"]),
+        ([{"value": 0, "label": "background"}, *({"label": b[4], "box": list(b[:4])} for b in BOXES)],
+         ["chair", "sofa"]),
+        ({"pred_boxes": CORNERS_ONLY, "pred_classes": [0, 2], "class_names": ["chair", "lamp", "sofa"]},
+         ["chair", "sofa"]),
+    ],
+    ids=["scores behind words", "scores and numbers", "the background is none", "numbers of classes"],
+)  # fmt: skip
+def test_words_of_boxes(document: object, words: list[str]) -> None:
+    assert [b.label for b in read(document)[0]] == words
 
 
 def test_bounds_of_cvat_s_masks() -> None:
@@ -394,6 +345,6 @@ def test_bounds_of_cvat_s_masks() -> None:
         for x1, y1, x2, y2, w in BOXES
     )
     image = f'<image name="photo.png" width="400" height="300">{masks}</image>'
-    source = Source(f"<annotations>{image}</annotations>".encode(), "a.xml")
-    found = read_boxes(source, decoded(*SIZE))[0]
-    assert [(b.box, b.label) for b in found] == [(tuple(map(float, b[:4])), b[4]) for b in BOXES]
+    assert [(b.box, b.label) for b in read(f"<annotations>{image}</annotations>")[0]] == [
+        (tuple(map(float, b[:4])), b[4]) for b in BOXES
+    ]

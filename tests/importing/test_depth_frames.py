@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 from jaxtyping import Float
 from PIL import Image
+from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import InputError
+from diorama_core.importing.depth_frames import KINECT
 from diorama_core.importing.forms import open_form
 from diorama_core.importing.point_files import read_points
 from diorama_core.render.raycast import MeshCaster
@@ -98,11 +100,22 @@ def scannet(folder: Path) -> None:
     (folder / "intrinsic" / "intrinsic_depth.txt").write_text(rows(K))
 
 
-@pytest.mark.parametrize("write", [seven_scenes, older_scannet, replica, scaled_replica, matterport, scannet])
+def tum(folder: Path) -> None:
+    listed, poses = [], []
+    for n, (camera, depth) in enumerate(shots(KINECT.resize(160, 120))):
+        save(folder / "depth" / f"{n}.png", depth, 5000)
+        listed.append(f"{n}.0 depth/{n}.png")
+        quaternion = Rotation.from_matrix(camera.T_world_camera[:3, :3]).as_quat()
+        poses.append(" ".join(f"{v:.9g}" for v in (n + 0.01, *camera.position, *quaternion)))
+    (folder / "depth.txt").write_text("# depth\n" + "\n".join(listed))
+    (folder / "groundtruth.txt").write_text("# poses\n" + "\n".join(poses))
+
+
+@pytest.mark.parametrize("write", [seven_scenes, older_scannet, replica, scaled_replica, matterport, scannet, tum])
 def test_a_data_set_s_folder_is_a_room(tmp_path: Path, write: Callable[[Path], None]) -> None:
     write(tmp_path / "room")
     with open_form(tmp_path / "room") as (form, place):
-        assert "frames" in form.name
+        assert "frames" in form.name or form.name == "TUM RGB-D"
         points = read_points(place).points
     expected = np.array([m.bounds for m in room_meshes()])
     low, high = expected[:, 0].min(axis=0), expected[:, 1].max(axis=0)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.importing.cloud_units import UNITS, Unit, likely_unit
+from diorama_core.importing.point_cloud import UNITS, Unit, likely_unit
 from tests.importing.scans import room_points
 
 UP = np.array([0.0, 0.0, 1.0])
