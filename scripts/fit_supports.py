@@ -38,7 +38,7 @@ from diorama_core.evaluation.benchmarks.cases import SEEDS, make_views, recipe
 from diorama_core.evaluation.benchmarks.photo_build import read_annotated_inputs
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.evaluation.benchmarks.system import WAYS
-from diorama_core.evaluation.metrics.scene import align_to_truth, match_all
+from diorama_core.evaluation.metrics.scene import Matched
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.plan import assemble, evaluate
@@ -146,16 +146,9 @@ def _faces(scene: Scene, normal: Float[np.ndarray, "3"], front_deg: float | None
     return bool(normal[:2] @ front > np.cos(np.deg2rad(45.0)))
 
 
-def _true(view: TruthView, scene: Scene) -> tuple[Scene, dict[str, str]]:
-    """The scene in the true world, and the built object of each true one."""
-    there = align_to_truth(scene, view)
-    truth = [view.scene.objects[k] for k in view.indices]
-    return there, {t.id: m.id for t, m in zip(truth, match_all(truth, there), strict=True) if m is not None}
-
-
 def _rendered(view: TruthView, scene: Scene) -> dict[str, frozenset[str]]:
-    there, names = _true(view, scene)
-    found = {}
+    matched = Matched.of(view, scene)
+    there, names, found = matched.scene, {true: item.id for true, item in matched.found.items()}, {}
     for edge in true_supports(view):
         if edge.child not in names:
             continue
@@ -171,11 +164,12 @@ def _rendered(view: TruthView, scene: Scene) -> dict[str, frozenset[str]]:
 
 def _standings(group: str, view: TruthView, scene: Scene, noise: ObservationNoise) -> Iterator[Standing]:
     """How every object on the floor stands to every wall that was found."""
-    there, names = _true(view, scene)
+    matched = Matched.of(view, scene)
+    there, built = matched.scene, matched.found
     floors = {p.id for p in view.scene.architecture.by_role("floor")}
     for true in (view.scene.objects[k] for k in view.indices):
         edge = view.scene.support_of(true.id)
-        if true.id not in names or edge is None or edge.parent not in floors:
+        if true.id not in built or edge is None or edge.parent not in floors:
             continue
         touched = [
             w.normal
@@ -184,7 +178,7 @@ def _standings(group: str, view: TruthView, scene: Scene, noise: ObservationNois
             and float(np.abs(w.normal @ true.pose.R_world_object).max()) > SAME_WALL
         ]
         for wall, in_truth in zip(scene.architecture.by_role("wall"), there.architecture.by_role("wall"), strict=True):
-            relation = wall_relation(scene, scene.object(names[true.id]), wall, noise)
+            relation = wall_relation(scene, scene.object(built[true.id].id), wall, noise)
             if relation is not None:
                 values = np.array([term(relation) for term in STANDING_TERMS.values()])
                 right = any(float(n @ in_truth.normal) > SAME_WALL for n in touched)

@@ -19,7 +19,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations, read_intrinsics
-from diorama_core.evaluation.benchmarks.photo_build import PhotoScores, PhotoTask, build_photo
+from diorama_core.evaluation.benchmarks.photo_build import PhotoScores, PhotoTask, build_photo, grid
 from diorama_core.evaluation.benchmarks.photo_tables import (
     folds_table,
     form_table,
@@ -260,9 +260,7 @@ def sheet(bench: PhotosBench) -> UInt8[np.ndarray, "_ _ 3"]:
     tiles = [_caption(picture[..., ::-1], title) for title, picture in pictures if picture is not None]
     if not tiles:
         raise InputError("no photo was built, so there is nothing to show in a sheet")
-    tiles += [np.full_like(tiles[0], 255)] * (-len(tiles) % SHEET_COLUMNS)
-    rows = [np.concatenate(tiles[k : k + SHEET_COLUMNS], axis=1) for k in range(0, len(tiles), SHEET_COLUMNS)]
-    return np.concatenate(rows)
+    return grid(tiles, SHEET_COLUMNS)
 
 
 def _caption(tile: UInt8[np.ndarray, "h w 3"], words: str) -> UInt8[np.ndarray, "_ w 3"]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import TypeVar
@@ -10,8 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from diorama_core.artefacts import RankedShapes
-from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import make_views, recipe
+from diorama_core.evaluation.benchmarks.cases import make_views, recipe, tried
 from diorama_core.evaluation.benchmarks.pose_comparison import (
     BASELINES,
     COMPARED_SHAPES,
@@ -39,7 +37,7 @@ from diorama_core.evaluation.benchmarks.pose_tables import (
 )
 from diorama_core.evaluation.benchmarks.retrieval import object_groups
 from diorama_core.evaluation.metrics.pose import object_alignment, pair_checks
-from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, match_all
+from diorama_core.evaluation.metrics.scene import Matched, align_to_truth
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe
@@ -51,8 +49,6 @@ from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Scene, Support
 from diorama_core.synthesis.artefacts import true_supports
 from diorama_core.synthesis.truth import TruthView
-
-log = logging.getLogger(__name__)
 
 RETRIEVALS = (1, 4, 8)
 PAPER_LAYOUT = "O, P, S, R"
@@ -136,8 +132,8 @@ class _Tally:
             ),
             poses,
             tuple((name, tuple(rows)) for name, rows in self.ablation.items()),
-            tuple((name, _counts(rows)) for name, rows in sorted(self.groups.items())),
-            tuple((name, _counts(rows)) for name, rows in sorted(self.groups_after.items())),
+            _counts(self.groups),
+            _counts(self.groups_after),
         )
 
 
@@ -211,13 +207,7 @@ def _scenes(
 
 def _try(work: Callable[..., Result], *given: object) -> Result | None:
     """The result, or None when a stage failed."""
-    try:
-        return work(*given)
-    except Cancelled:
-        raise
-    except Exception as error:  # whatever goes wrong, the room counts as failed
-        log.warning("a room failed: %s", error)
-        return None
+    return tried("a room", work, *given)[0]
 
 
 def _arrange(
@@ -228,24 +218,20 @@ def _arrange(
     progress: Progress,
 ) -> Mapping[str, Scene]:
     """Every row of the optimiser's ablation for one room; the arranged scenes by row."""
-    rows: list[tuple[str, LayoutStage, Scene | None]] = [("none", AsObserved(), observed)]
-    rows += [
-        (name, PaperRecipe(library, stages=k), observed)
-        for k, name in enumerate(("O", "O, P", "O, P, S", PAPER_LAYOUT), start=1)
-    ]
     feasible = layout_recipe("feasible", library)
-    rows += [
+    graph = None if observed is None else with_true_graph(view, observed)
+    room = None if observed is None else with_true_architecture(view, observed)
+    stages = (PaperRecipe(library, stages=k) for k in range(1, 5))
+    rows: list[tuple[str, LayoutStage, Scene | None]] = [
+        ("none", AsObserved(), observed),
+        *((name, stage, observed) for name, stage in zip(("O", "O, P", "O, P, S", PAPER_LAYOUT), stages, strict=True)),
         ("all-in-one", AllInOneRecipe(library), observed),
         ("feasible", feasible, observed),
+        ("true graph", PaperRecipe(library), graph),
+        ("true architecture", PaperRecipe(library), room),
+        ("feasible, true graph", feasible, graph),
+        ("feasible, true architecture", feasible, room),
     ]
-    if observed is not None:
-        graph, room = with_true_graph(view, observed), with_true_architecture(view, observed)
-        for name, stage in (("", PaperRecipe(library)), ("feasible, ", feasible)):
-            rows += [(f"{name}true graph", stage, graph), (f"{name}true architecture", stage, room)]
-    else:
-        rows += [
-            (f"{name}true {what}", feasible, None) for name in ("", "feasible, ") for what in ("graph", "architecture")
-        ]
     scenes: dict[str, Scene] = {}
     for name, stage, scene in rows:
         progress.report(0.3, f"layout: {name}")
@@ -258,9 +244,8 @@ def _arrange(
 
 def with_true_graph(view: TruthView, scene: Scene) -> Scene:
     """The prediction with the true support edges among the objects that were found; planes by role and nearness."""
-    scene = align_to_truth(scene, view)
-    truth = [view.scene.objects[k] for k in view.indices]
-    names = {t.id: m.id for t, m in zip(truth, match_all(truth, scene)) if m is not None}
+    matched = Matched.of(view, scene)
+    scene, names = matched.scene, {true: item.id for true, item in matched.found.items()}
     edges = []
     for edge in true_supports(view):
         if edge.child in names:
@@ -307,16 +292,11 @@ def with_true_architecture(view: TruthView, scene: Scene) -> Scene:
 def _count_groups(
     view: TruthView, scene: Scene | None, library: ShapeLibrary, groups: dict[str, list[tuple[float, ...]]]
 ) -> None:
-    truth = [view.scene.objects[k] for k in view.indices]
-    match = [None] * len(truth) if scene is None else match_all(truth, align_to_truth(scene, view))
-    true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
-    placed = [None if m is None else as_placed(m) for m in match]
+    true, placed = Matched.of(view, Scene() if scene is None else scene).placed(library)
     checks = pair_checks(true, placed)
-    others = max(len(truth) - 1, 1)
+    grids, others = (checks.rotation, checks.translation, checks.scale, checks.all_three), max(len(true) - 1, 1)
     for row, index in enumerate(view.indices):
-        grids = (checks.rotation[row], checks.translation[row], checks.scale[row])
-        every = grids[0] & grids[1] & grids[2]
-        shares = [(float(g.sum()) - 1) / others for g in (*grids, every)]
+        shares = [(float(g[row].sum()) - 1) / others for g in grids]
         accuracy = object_alignment([true[row]], [placed[row]]).acc
         item = view.scene.objects[index]
         name = CATEGORY_NAMES.get(item.category, item.category)
@@ -325,6 +305,7 @@ def _count_groups(
             groups.setdefault(group, []).append((*shares, accuracy))
 
 
-def _counts(rows: Sequence[tuple[float, ...]]) -> GroupCounts:
-    r, t, s, every, object_acc = (float(x) for x in np.mean(rows, axis=0))
-    return GroupCounts(len(rows), r, t, s, every, object_acc)
+def _counts(groups: Mapping[str, Sequence[tuple[float, ...]]]) -> tuple[tuple[str, GroupCounts], ...]:
+    return tuple(
+        (name, GroupCounts(len(rows), *np.mean(rows, axis=0).tolist())) for name, rows in sorted(groups.items())
+    )

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from diorama_core.evaluation.benchmarks.pose_comparison import PoseScores
 from diorama_core.evaluation.benchmarks.retrieval import GROUPS
-from diorama_core.evaluation.metrics.pose import Alignment, pool
+from diorama_core.evaluation.metrics.pose import pool
 from diorama_core.evaluation.reports import paper
-from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
+from diorama_core.evaluation.reports.tables import Column, Row, Table, mean, paper_rows
 
 
 @dataclass(frozen=True)
@@ -50,11 +48,11 @@ def comparison_table(
         Row(
             name,
             (
-                *_shares(pool([s.pairs for s in rooms])),
-                *_shares(pool([s.every for s in rooms])),
-                *_shares(pool([s.own for s in rooms])),
-                _mean([s.box_overlap_cm for s in rooms if s.box_overlap_cm is not None]),
-                _mean([s.relation for s in rooms]),
+                *pool([s.pairs for s in rooms]).shares,
+                *pool([s.every for s in rooms]).shares,
+                *pool([s.own for s in rooms]).shares,
+                mean(s.box_overlap_cm for s in rooms),
+                mean(s.relation for s in rooms),
             ),
         )
         for name, rooms in solvers
@@ -79,7 +77,7 @@ def groups_table(groups: Sequence[tuple[str, GroupCounts]], when: str = "before 
         groups: right answers by group.
         when: before or after which layout they are counted.
     """
-    columns = (Column("instances", "d"), *(Column(n, better="↑") for n in ("rAcc", "tAcc", "sAcc", "Acc")))
+    columns = (Column("instances", "d"), *(Column(n, better="↑") for n in _SHARES))
     known = dict(groups)
     rows = [Row(g, (c.instances, c.r, c.t, c.s, c.every)) for g in GROUPS if (c := known.get(g))]
     return Table(f"Groups, true depth, {when}, mean over pairs", columns, (*rows, *paper_rows(paper.GROUPS)))
@@ -89,10 +87,9 @@ def retrievals_table(
     retrievals: Sequence[tuple[int, Sequence[PoseScores], Sequence[PoseScores]]],
 ) -> Table:
     """Alignment against the number of retrieved shapes (paper, supplement)."""
-    names = [f"{n} {d}" for d in ("true depth", "estimated") for n in ("rAcc", "tAcc", "sAcc", "Acc")]
+    names = [f"{n} {d}" for d in ("true depth", "estimated") for n in _SHARES]
     rows = [
-        Row(str(k), (*_shares(pool([s.pairs for s in a])), *_shares(pool([s.pairs for s in b]))))
-        for k, a, b in retrievals
+        Row(str(k), (*pool([s.pairs for s in a]).shares, *pool([s.pairs for s in b]).shares)) for k, a, b in retrievals
     ]
     columns = tuple(Column(n, better="↑") for n in names)
     return Table("Shapes retrieved, mean over pairs", columns, (*rows, *paper_rows(paper.RETRIEVALS)))
@@ -116,10 +113,7 @@ def _layout_table(title: str, rows: Sequence[tuple[str, Sequence[PoseScores]]], 
         Column("overall", better="↑"),
     )  # fmt: skip
     keys = ("box_overlap_cm", "orientation", "placement", "structure")
-    ours = [
-        Row(name, tuple(_mean([v for s in rooms if (v := getattr(s, k)) is not None]) for k in keys))
-        for name, rooms in rows
-    ]
+    ours = [Row(name, tuple(mean(getattr(s, k) for s in rooms) for k in keys)) for name, rooms in rows]
     return Table(title, columns, (*ours, *paper_rows(published)))
 
 
@@ -130,20 +124,11 @@ def category_table(groups: Sequence[tuple[str, GroupCounts]]) -> Table:
     present = [c for c in counts if c is not None]
     total = sum(c.instances for c in present)
     each = [None if c is None else 100 * c.own for c in counts]
-    mean = _mean([v for v in each if v is not None])
     instances = 100 * sum(c.own * c.instances for c in present) / total if total else None
     columns = tuple(Column(c, ".1f", "↑") for c in (*paper.CATEGORIES, "class mean", "instance mean"))
-    rows = (Row("embedded, true depth and shapes", (*each, mean, instances)), *paper_rows(paper.BY_CATEGORY))
+    rows = (Row("embedded, true depth and shapes", (*each, mean(each), instances)), *paper_rows(paper.BY_CATEGORY))
     note = (
         "Ours: rendered rooms with true depth, masks and shapes. The paper's rows: ScanNet25k photographs with a "
         "network's depth; they show the order of magnitude, not a ranking."
     )
     return Table("Alignment by category (20 cm, 20 degrees, 20 %)", columns, rows, note)
-
-
-def _shares(a: Alignment) -> tuple[float, float, float, float]:
-    return a.r_acc, a.t_acc, a.s_acc, a.acc
-
-
-def _mean(values: Sequence[float]) -> float | None:
-    return float(np.mean(values)) if values else None

@@ -87,7 +87,7 @@ def relations_of(view: TruthView, *, with_depth: bool, graph: GraphStage | None 
     """The supports of one picture, from masks and classes with depth or without, by geometry unless a graph stage is
     given; the camera's orientation is known.
     """
-    inputs = view.inputs if with_depth else _without_depth(view.inputs)
+    inputs = view.inputs if with_depth else replace(view.inputs, depth_m=None)
     camera = view.camera
     reading = CameraHypothesis(camera.intrinsics, camera.T_world_camera[:3, :3], 1.0)
     height = float(camera.position[2]) if with_depth else None
@@ -99,10 +99,6 @@ def relations_of(view: TruthView, *, with_depth: bool, graph: GraphStage | None 
     supports = geometry.supports if graph is None else graph.relate(inputs, objects, geometry, quiet).supports
     by_mask = {o.mask_id: o.id for o in view.scene.objects if o.mask_id is not None}
     return judge(supports, {o.id: by_mask[o.mask_id] for o in objects}, view.scene)
-
-
-def _without_depth(inputs: Inputs) -> Inputs:
-    return replace(inputs, depth_m=None)
 
 
 WITH_DEPTH, PHOTO_ALONE = "masks and depth", "masks and the photo alone"
