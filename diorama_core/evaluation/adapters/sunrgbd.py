@@ -1,4 +1,4 @@
-"""SUN RGB-D pictures: a folder with `image/`, `depth_bfx/` (or `depth/`), `intrinsics.txt`, `extrinsics/` and
+"""SUN RGB-D pictures: a folder with `image/`, `depth_bfx/` (or `depth/`), `intrinsics.txt` and
 `annotation2Dfinal/index.json` (polygons), as published.
 """
 
@@ -10,12 +10,12 @@ from typing import Any
 
 import cv2
 import numpy as np
-from jaxtyping import Float, Int32
+from jaxtyping import Int32
 
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.evaluation.adapters.files import read_json, read_matrix
-from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, resolve
+from diorama_core.evaluation.adapters.files import boxes_of, read_json, read_matrix
+from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
 from diorama_core.perception.inputs import read_inputs
 
 
@@ -25,8 +25,6 @@ class SunScene:
 
     name: str
     inputs: Inputs
-    R_world_camera: Float[np.ndarray, "3 3"] | None
-    """Tilt of the camera, where the folder has it: world +Z up, camera x right, y down, z forward."""
 
 
 def read_sunrgbd(folder: Path) -> SunScene:
@@ -44,7 +42,7 @@ def read_sunrgbd(folder: Path) -> SunScene:
     inputs = Inputs(
         read.photo, tuple(b for _, b in named), instances, named, depth_m=read.depth_m, intrinsics=read.intrinsics
     )
-    return SunScene(folder.name, inputs, _tilt(folder))
+    return SunScene(folder.name, inputs)
 
 
 def _only(folder: Path, pattern: str) -> Path:
@@ -65,16 +63,11 @@ def _polygons(
         corners = np.column_stack([polygon["x"], polygon["y"]]).astype(np.float32)
         if label and len(corners) >= 3:
             drawn.append((float(cv2.contourArea(corners)), label, corners))
+    drawn.sort(key=lambda d: -d[0])
     instances = np.zeros(shape, np.int32)
-    for number, (_, _, corners) in enumerate(sorted(drawn, key=lambda d: -d[0]), start=1):
+    for number, (_, _, corners) in enumerate(drawn, start=1):
         cv2.fillPoly(instances, [np.rint(corners).astype(np.int32)], number)
-    named = []
-    for number, (_, label, _) in enumerate(sorted(drawn, key=lambda d: -d[0]), start=1):
-        rows, columns = np.nonzero(instances == number)
-        if len(rows):
-            box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
-            named.append((number, LabelledBox(box, resolve(label).category.name, label)))
-    return instances, tuple(named)
+    return instances, boxes_of(instances, [label for _, label, _ in drawn])
 
 
 def _label(objects: list[Any], index: int) -> str:
@@ -82,13 +75,3 @@ def _label(objects: list[Any], index: int) -> str:
     record = objects[index] if 0 <= index < len(objects) else None
     name = str(record["name"]).split(":")[0].strip().lower() if record else ""
     return "" if name in ARCHITECTURE_WORDS else name
-
-
-def _tilt(folder: Path) -> Float[np.ndarray, "3 3"] | None:
-    files = sorted((folder / "extrinsics").glob("*.txt"))
-    if not files:
-        return None
-    R = read_matrix(files[0], 3, 4)[:, :3]
-    # SUN's axes are x right, y forward, z up; ours of the camera are x right, y down, z forward.
-    swap = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-    return R @ swap

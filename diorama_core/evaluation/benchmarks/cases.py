@@ -92,26 +92,14 @@ class LeftOut:
 def make_views(
     cases: tuple[Case, ...], library: ShapeLibrary, left_out: list[LeftOut]
 ) -> Iterator[tuple[Case, TruthView]]:
-    """`view_of` each, going on with the next room where one cannot be furnished or photographed.
-
-    Args:
-        cases: The pictures.
-        library: What rooms are furnished from.
-        left_out: Receives what could not be made.
-    """
+    """`view_of` each, going on with the next room where one cannot be furnished or photographed."""
     return attempt(cases, lambda case: view_of(case, library), left_out)
 
 
 def attempt(
     cases: tuple[Case, ...], make: Callable[[Case], Made], left_out: list[LeftOut]
 ) -> Iterator[tuple[Case, Made]]:
-    """Whatever is made of each case, going on with the next one where that fails.
-
-    Args:
-        cases: The pictures.
-        make: Makes something of one.
-        left_out: Receives what could not be made.
-    """
+    """Whatever is made of each case; what could not be made is added to `left_out`, and the next one follows."""
     for case in cases:
         result, reason = tried(case.name, make, case, fate="is left out")
         if result is None:
@@ -121,13 +109,7 @@ def attempt(
 
 
 def tried(name: str, work: Callable[..., Made], *given: object, fate: str = "failed") -> tuple[Made | None, str]:
-    """What work makes of what it is given; where it fails, whatever goes wrong, None and why: the others go on.
-
-    Args:
-        name: of what is worked on.
-        work: is done.
-        given: to it.
-        fate: what becomes of what fails, in words for the log.
+    """What work makes of what it is given; where it fails, None and why, and the log says what becomes of `name`.
 
     Raises:
         Cancelled: on request.

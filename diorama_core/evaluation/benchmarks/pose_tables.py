@@ -71,12 +71,7 @@ def comparison_table(
 
 
 def groups_table(groups: Sequence[tuple[str, GroupCounts]], when: str = "before layout") -> Table:
-    """Alignment by group of objects (paper, supplement, which has them after the layout).
-
-    Args:
-        groups: right answers by group.
-        when: before or after which layout they are counted.
-    """
+    """Alignment by group of objects (paper, supplement, which has them after the layout)."""
     columns = (Column("instances", "d"), *(Column(n, better="↑") for n in _SHARES))
     known = dict(groups)
     rows = [Row(g, (c.instances, c.r, c.t, c.s, c.every)) for g in GROUPS if (c := known.get(g))]

@@ -56,13 +56,10 @@ class RelationCount:
         return self.right / self.total if self.total else 1.0
 
 
-def judge(supports: tuple[Support, ...], names: dict[str, str], truth: Scene) -> RelationCount:
-    """Edges beside the truth's; only objects whose true supporter is itself visible, or a part of the room, count.
+def _judge(supports: tuple[Support, ...], names: dict[str, str], truth: Scene) -> RelationCount:
+    """Edges beside the truth's, whose objects `names` has by their ids in the photo.
 
-    Args:
-        supports: of objects by their ids in the photo, or "floor", "wall" and "ceiling".
-        names: the truth's object id by id in the photo.
-        truth: the room.
+    Only objects whose true supporter is itself visible, or a part of the room, count.
     """
     roles: dict[str, str] = {p.id: p.role for p in truth.architecture.planes}
     visible = set(names.values())
@@ -98,7 +95,7 @@ def relations_of(view: TruthView, *, with_depth: bool, graph: GraphStage | None 
     geometry = stage.measure(inputs, estimate, objects, quiet)
     supports = geometry.supports if graph is None else graph.relate(inputs, objects, geometry, quiet).supports
     by_mask = {o.mask_id: o.id for o in view.scene.objects if o.mask_id is not None}
-    return judge(supports, {o.id: by_mask[o.mask_id] for o in objects}, view.scene)
+    return _judge(supports, {o.id: by_mask[o.mask_id] for o in objects}, view.scene)
 
 
 WITH_DEPTH, PHOTO_ALONE = "masks and depth", "masks and the photo alone"

@@ -162,12 +162,7 @@ def run(tasks: Sequence[PhotoTask], library: ShapeLibrary, progress: Progress = 
 
 
 def answers_table(scenes: Sequence[KnownScene], what: str = RIGHT_IN_ALL) -> Table:
-    """What answers are worth in each order.
-
-    Args:
-        scenes: reviewed.
-        what: is counted.
-    """
+    """What answers are worth in each order, and what is counted."""
     rng = np.random.default_rng(0)
     orders: dict[str, tuple[int, Order]] = {
         "the review": (1, lambda asked: asked[0]),

@@ -232,13 +232,7 @@ class _Room:
         return replace(scene, objects=objects, camera=first.camera)
 
     def score(self, way: str, views: Sequence[RoomView], build: Callable[[Sequence[RoomView]], Scene]) -> ViewsResult:
-        """The own alignment of the first photo's objects; a build that fails has none right.
-
-        Args:
-            way: how it is built.
-            views: the pictures.
-            build: makes a scene of them.
-        """
+        """The own alignment of the first photo's objects; a build that fails has none right."""
         begun, truth = time.process_time(), views[0].truth
         scene, failure = tried(f"{self.case.name}, {way}", build, views)
         seconds = time.process_time() - begun

@@ -181,9 +181,7 @@ def statistic_interval(
 ) -> Interval | None:
     """The percentile interval of any statistic of groups of objects; None with fewer than two groups. Deterministic.
 
-    Args:
-        groups: Drawn whole, such as photos with their objects.
-        statistic: Of the groups drawn; draws for which it is None are left out.
+    Draws for which the statistic is None are left out.
     """
     rng, count = np.random.default_rng(0), len(groups)
     draws = (rng.integers(count, size=count).tolist() for _ in range(GROUP_DRAWS if count > 1 else 0))
@@ -196,13 +194,7 @@ def paired_interval(
     after: Sequence[Group],
     statistic: Callable[[Sequence[Group]], float | None],
 ) -> Interval | None:
-    """The percentile interval of what a statistic changes by, the same groups drawn before and after.
-
-    Args:
-        before: Groups of objects, such as photos.
-        after: The same groups in the same order.
-        statistic: Of the groups drawn; draws for which either is None are left out.
-    """
+    """`statistic_interval` of what a statistic changes by, the same groups in the same order drawn before and after."""
 
     def change(pairs: Sequence[tuple[Group, Group]]) -> float | None:
         old, new = zip(*pairs, strict=True)

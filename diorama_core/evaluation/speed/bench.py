@@ -259,16 +259,10 @@ def read_figures(path: Path | None = None) -> dict[str, float]:
         raise InputError(f"{path} is not a file of speed figures ({error}); write one with --keep FILE") from error
 
 
-def worse_by(name: str, before: float, now: float, tolerance: float = TOLERANCE) -> float | None:
+def _worse_by(name: str, before: float, now: float, tolerance: float = TOLERANCE) -> float | None:
     """How many times worse a figure has become where that is more than the tolerance; None where it is not.
 
     A growth exponent counts as the factor that its rise costs over a tenfold quantity.
-
-    Args:
-        name: of the figure.
-        before: its value then.
-        now: its value now.
-        tolerance: factor that counts as noise.
     """
     if not (math.isfinite(before) and math.isfinite(now)):
         return math.inf
@@ -284,7 +278,7 @@ def worse_by(name: str, before: float, now: float, tolerance: float = TOLERANCE)
 
 def slower(now: Mapping[str, float], before: Mapping[str, float], tolerance: float = TOLERANCE) -> dict[str, float]:
     """The figures measured both times that have become worse, with how many times."""
-    factors = {name: worse_by(name, before[name], now[name], tolerance) for name in sorted(before) if name in now}
+    factors = {name: _worse_by(name, before[name], now[name], tolerance) for name in sorted(before) if name in now}
     return {name: times for name, times in factors.items() if times is not None}
 
 

@@ -29,10 +29,9 @@ from diorama_core.evaluation.benchmarks.pose_tables import comparison_table
 from diorama_core.pose import RenderAndCompare
 from diorama_core.pose.correspondence.solvers import CorrespondencePose
 from diorama_core.render.templates import TemplateGrid
-from diorama_core.synthesis import render_truth, sample_cameras
-from diorama_core.synthesis.layout_rooms import box_library, generate_room
+from diorama_core.synthesis.layout_rooms import box_library
 from diorama_core.synthesis.truth import TruthView
-from tests.evaluation.truth import without_unasked
+from tests.evaluation.truth import view_of_boxes, without_unasked
 
 
 @pytest.fixture(scope="module")
@@ -41,10 +40,8 @@ def library():
 
 
 @pytest.fixture(scope="module")
-def view(library) -> TruthView:
-    room = generate_room(3, 8).truth
-    camera = sample_cameras(room, library, 1, 1, (160, 120))[0]
-    return render_truth(room, camera, library, (160, 120))
+def view() -> TruthView:
+    return view_of_boxes()
 
 
 @pytest.fixture(scope="module")

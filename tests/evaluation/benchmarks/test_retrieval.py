@@ -19,18 +19,16 @@ from diorama_core.evaluation.benchmarks.retrieval import (
 )
 from diorama_core.geometry.shape_appearance import appearance_of
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.synthesis import render_truth, sample_cameras
-from diorama_core.synthesis.layout_rooms import BoxLibrary, box_library, generate_room
+from diorama_core.synthesis.layout_rooms import BoxLibrary, box_library
 from diorama_core.synthesis.truth import TruthView
+from tests.evaluation.truth import view_of_boxes
 
 LIBRARY: BoxLibrary = box_library()
 
 
 @pytest.fixture(scope="module")
 def view() -> TruthView:
-    room = generate_room(3, 8).truth
-    camera = sample_cameras(room, LIBRARY, 1, 1, (160, 120))[0]
-    return render_truth(room, camera, LIBRARY, (160, 120))
+    return view_of_boxes()
 
 
 @pytest.mark.parametrize("name", ALONE)
