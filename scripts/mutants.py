@@ -91,24 +91,15 @@ GUARDED: dict[str, tuple[str, ...]] = {
 ELSEWHERE = {"diorama_core/io/limited.py": ("_serve", "_tell", "_answer")}
 """Functions that another process runs, which reads the module's file itself: a defect here is none there."""
 
-COMPARED: dict[type[ast.cmpop], type[ast.cmpop]] = {
-    ast.Lt: ast.LtE,
-    ast.LtE: ast.Lt,
-    ast.Gt: ast.GtE,
-    ast.GtE: ast.Gt,
-    ast.Eq: ast.NotEq,
-    ast.NotEq: ast.Eq,
-    ast.In: ast.NotIn,
-    ast.NotIn: ast.In,
-    ast.Is: ast.IsNot,
-    ast.IsNot: ast.Is,
-}
-AT_A_CLOCK: dict[type[ast.cmpop], type[ast.cmpop]] = {
-    ast.Lt: ast.GtE,
-    ast.LtE: ast.Gt,
-    ast.Gt: ast.LtE,
-    ast.GtE: ast.Lt,
-}
+
+def _both_ways(*pairs: tuple[type[ast.cmpop], type[ast.cmpop]]) -> dict[type[ast.cmpop], type[ast.cmpop]]:
+    return {a: b for pair in pairs for a, b in (pair, pair[::-1])}
+
+
+COMPARED = _both_ways(
+    (ast.Lt, ast.LtE), (ast.Gt, ast.GtE), (ast.Eq, ast.NotEq), (ast.In, ast.NotIn), (ast.Is, ast.IsNot)
+)
+AT_A_CLOCK = _both_ways((ast.Lt, ast.GtE), (ast.LtE, ast.Gt))
 """No clock reads exactly the limit: there the neighbour makes no difference, the contrary does."""
 COMPUTED: dict[type[ast.operator], type[ast.operator]] = {
     ast.Add: ast.Sub,
