@@ -14,7 +14,6 @@ from diorama_core.evaluation.benchmarks.cases import STANDARD_SCENES, Case, reci
 from diorama_core.evaluation.benchmarks.pose import with_true_architecture, with_true_graph
 from diorama_core.evaluation.benchmarks.pose_comparison import PoseScores
 from diorama_core.evaluation.benchmarks.pose_tables import (
-    GroupCounts,
     ablation_table,
     all_in_one_table,
     category_table,
@@ -238,11 +237,8 @@ def _tables():
     item = RetrievalResult("a", "a", "chair", ("furniture", "complete"), 5.0, 4.0, 9.0, 8.0, 2, True, False, alone)
     room = room_box(4.0, 4.0).planes
     scores = architecture_scores(room, room, camera(-1, 1.4))
-    counts = (
-        ("furniture", GroupCounts(3, 0.5, 0.6, 0.7, 0.4, 0.3)),
-        ("category: chair", GroupCounts(3, 0, 0, 0, 0, 0.5)),
-    )
-    rooms = [("none", [failed]), ("O, P, S, R", [failed]), ("all-in-one", [failed]), ("feasible", [failed])]
+    counts = {"furniture": [(0.5, 0.6, 0.7, 0.4, 0.3)] * 3, "category: chair": [(0, 0, 0, 0, 1), (0, 0, 0, 0, 0)]}
+    rooms = {name: [failed] for name in ("none", "O, P, S, R", "all-in-one", "feasible")}
     return {
         "system": system_table([("true masks and depth", [result])]),
         "scenes": scene_table([("true masks and depth", [result])]),
@@ -251,9 +247,9 @@ def _tables():
         "architecture": architecture_table([("d", [RoomResult("a", scores, 0.1), RoomResult("b", None, 0.1)])]),
         "retrieval": retrieval_table([item]),
         "recall": recall_table([item]),
-        "pose": comparison_table("Pose", [("ours", [failed])], paper.POSE_TRUE_DEPTH),
+        "pose": comparison_table("Pose", {"ours": [failed]}, paper.POSE_TRUE_DEPTH),
         "groups": groups_table(counts),
-        "retrievals": retrievals_table([(1, [failed], [failed])]),
+        "retrievals": retrievals_table({1: [failed]}, {1: [failed]}),
         "ablation": ablation_table(rooms),
         "all": all_in_one_table(rooms),
         "category": category_table(counts),

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, replace
 from typing import TypeVar
-
-import numpy as np
 
 from diorama_core.artefacts import RankedShapes
 from diorama_core.evaluation.benchmarks.cases import make_views, recipe, tried
@@ -27,7 +25,7 @@ from diorama_core.evaluation.benchmarks.pose_comparison import (
     shapes_of,
 )
 from diorama_core.evaluation.benchmarks.pose_tables import (
-    GroupCounts,
+    ObjectShares,
     ablation_table,
     all_in_one_table,
     category_table,
@@ -57,34 +55,43 @@ CATEGORY_NAMES = {"trash can": "bin", "television": "display", "monitor": "displ
 """Scan2CAD's names of categories, where they differ."""
 _PUBLISHED = {(TRUE_DEPTH, GIVEN): paper.POSE_TRUE_DEPTH, (ESTIMATED_DEPTH, GIVEN): paper.POSE_ESTIMATED_DEPTH}
 
+Name = TypeVar("Name")
 Result = TypeVar("Result")
+
+
+def _rows_of(*names: Name) -> dict[Name, list[PoseScores]]:
+    return {name: [] for name in names}
 
 
 @dataclass(frozen=True)
 class PoseBench:
-    """Named results; every list has one entry per room."""
+    """Results by name; every list has one entry per room, those of groups one per object."""
 
     seed: int
-    compared: tuple[tuple[str, str, tuple[tuple[str, tuple[PoseScores, ...]], ...]], ...]
-    """(depth, shapes, solvers by name)."""
-    retrievals: tuple[tuple[int, tuple[PoseScores, ...], tuple[PoseScores, ...]], ...]
-    """(shapes kept, with true depth, with estimated depth)."""
-    ablation: tuple[tuple[str, tuple[PoseScores, ...]], ...]
-    groups: tuple[tuple[str, GroupCounts], ...]
+    compared: Mapping[tuple[str, str], Mapping[str, list[PoseScores]]] = field(
+        default_factory=lambda: {condition: _rows_of(OURS, *BASELINES) for condition in CONDITIONS}
+    )
+    """By depth and shapes, and by solver."""
+    retained: Mapping[str, Mapping[int, list[PoseScores]]] = field(
+        default_factory=lambda: {depth: _rows_of(*RETRIEVALS) for depth in (TRUE_DEPTH, ESTIMATED_DEPTH)}
+    )
+    """By depth and shapes kept."""
+    ablation: dict[str, list[PoseScores]] = field(default_factory=dict)
+    groups: dict[str, list[ObjectShares]] = field(default_factory=dict)
     """With true depth and true shapes, by group and by "category: ..."."""
-    groups_after: tuple[tuple[str, GroupCounts], ...] = ()
-    """Counts by group after the paper's four stages of layout."""
+    groups_after: dict[str, list[ObjectShares]] = field(default_factory=dict)
+    """After the paper's four stages of layout."""
 
     def tables(self) -> tuple[Table, ...]:
         """The solvers under every condition, then the paper's group, retrieval-count, ablation and category tables."""
         return (
             *(
                 comparison_table(f"Pose, {depth}, {shapes}", solvers, _PUBLISHED.get((depth, shapes)))
-                for depth, shapes, solvers in self.compared
+                for (depth, shapes), solvers in self.compared.items()
             ),
             groups_table(self.groups),
             groups_table(self.groups_after, "after the paper's layout"),
-            retrievals_table(self.retrievals),
+            retrievals_table(*self.retained.values()),
             ablation_table(self.ablation),
             all_in_one_table(self.ablation),
             category_table(self.groups),
@@ -93,48 +100,16 @@ class PoseBench:
     def to_json(self) -> dict[str, object]:
         """Tables and every room."""
         compared = {
-            f"{depth}, {shapes}: {name}": [asdict(s) for s in rows]
-            for depth, shapes, solvers in self.compared
-            for name, rows in solvers
+            f"{depth}, {shapes}: {name}": rows
+            for (depth, shapes), solvers in self.compared.items()
+            for name, rows in solvers.items()
         }
         return {
             "bench": "pose",
             "seed": self.seed,
             "tables": [t.to_json() for t in self.tables()],
-            "rooms": compared | {name: [asdict(s) for s in rows] for name, rows in self.ablation},
+            "rooms": {name: [asdict(s) for s in rows] for name, rows in (compared | self.ablation).items()},
         }
-
-
-class _Tally:
-    """Results of the rooms so far."""
-
-    def __init__(self) -> None:
-        solvers = (OURS, *BASELINES)
-        self.compared: dict[tuple[str, str], dict[str, list[PoseScores]]] = {
-            condition: {name: [] for name in solvers} for condition in CONDITIONS
-        }
-        self.retained: dict[str, dict[int, list[PoseScores]]] = {
-            depth: {k: [] for k in RETRIEVALS} for depth in (TRUE_DEPTH, ESTIMATED_DEPTH)
-        }
-        self.ablation: dict[str, list[PoseScores]] = {}
-        self.groups: dict[str, list[tuple[float, ...]]] = {}
-        self.groups_after: dict[str, list[tuple[float, ...]]] = {}
-
-    def result(self, seed: int) -> PoseBench:
-        """All of them."""
-        true, estimated = self.retained[TRUE_DEPTH], self.retained[ESTIMATED_DEPTH]
-        poses = tuple((k, tuple(true[k]), tuple(estimated[k])) for k in RETRIEVALS)
-        return PoseBench(
-            seed,
-            tuple(
-                (*condition, tuple((name, tuple(rows)) for name, rows in solvers.items()))
-                for condition, solvers in self.compared.items()
-            ),
-            poses,
-            tuple((name, tuple(rows)) for name, rows in self.ablation.items()),
-            _counts(self.groups),
-            _counts(self.groups_after),
-        )
 
 
 def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progress = SILENT) -> PoseBench:
@@ -148,33 +123,33 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
         seed: of the series of rooms.
         progress: reports and cancellation.
     """
-    tally = _Tally()
+    bench = PoseBench(seed)
     solvers = SideBySide.create_embedded(library)
     cases = recipe(scenes, 1, seed)
     for number, (case, view) in enumerate(make_views(cases, library, [])):
         step = progress.part(number / len(cases), (number + 1) / len(cases))
-        _one_room(view, solvers, tally, step, case.name)
+        _one_room(view, solvers, bench, step, case.name)
     progress.report(1.0, "done")
-    return tally.result(seed)
+    return bench
 
 
-def _one_room(view: TruthView, solvers: SideBySide, tally: _Tally, progress: Progress, name: str) -> None:
+def _one_room(view: TruthView, solvers: SideBySide, bench: PoseBench, progress: Progress, name: str) -> None:
     library = solvers.library
     depths = tuple(dict.fromkeys(depth for depth, _ in CONDITIONS))
     progress.report(0.0, f"{name}: perception")
     seen = {d: _try(predict, inputs_with(view, d), library) for d in depths}
-    asked_for = {*tally.retained, *(depth for depth, shapes in CONDITIONS if shapes != GIVEN)}
+    asked_for = {*bench.retained, *(depth for depth, shapes in CONDITIONS if shapes != GIVEN)}
     retrieved = {d: _retrieve(solvers, seen[d]) for d in depths if d in asked_for}
     for turn, (depth, shapes) in enumerate(CONDITIONS):
         progress.report(0.1 + 0.1 * turn, f"{name}: {depth}, {shapes}")
         scenes = _scenes(view, solvers, seen[depth], retrieved.get(depth), shapes)
-        for solver, rows in tally.compared[depth, shapes].items():
+        for solver, rows in bench.compared[depth, shapes].items():
             rows.append(pose_scores(view, scenes.get(solver), library))
         if (depth, shapes) == (TRUE_DEPTH, GIVEN):
-            _count_groups(view, scenes.get(OURS), library, tally.groups)
-            arranged = _arrange(view, scenes.get(OURS), library, tally.ablation, progress)
-            _count_groups(view, arranged.get(PAPER_LAYOUT), library, tally.groups_after)
-    for depth, by_count in tally.retained.items():
+            _count_groups(view, scenes.get(OURS), library, bench.groups)
+            arranged = _arrange(view, scenes.get(OURS), library, bench.ablation, progress)
+            _count_groups(view, arranged.get(PAPER_LAYOUT), library, bench.groups_after)
+    for depth, by_count in bench.retained.items():
         for k, rows in by_count.items():
             progress.report(0.8, f"{name}: {k} shapes kept, {depth}")
             first = _firsts(retrieved[depth], k)
@@ -290,7 +265,7 @@ def with_true_architecture(view: TruthView, scene: Scene) -> Scene:
 
 
 def _count_groups(
-    view: TruthView, scene: Scene | None, library: ShapeLibrary, groups: dict[str, list[tuple[float, ...]]]
+    view: TruthView, scene: Scene | None, library: ShapeLibrary, groups: dict[str, list[ObjectShares]]
 ) -> None:
     true, placed = Matched.of(view, Scene() if scene is None else scene).placed(library)
     checks = pair_checks(true, placed)
@@ -303,9 +278,3 @@ def _count_groups(
         name = name if name in paper.CATEGORIES else "others"
         for group in (*object_groups(view, index), f"category: {name}"):
             groups.setdefault(group, []).append((*shares, accuracy))
-
-
-def _counts(groups: Mapping[str, Sequence[tuple[float, ...]]]) -> tuple[tuple[str, GroupCounts], ...]:
-    return tuple(
-        (name, GroupCounts(len(rows), *np.mean(rows, axis=0).tolist())) for name, rows in sorted(groups.items())
-    )
