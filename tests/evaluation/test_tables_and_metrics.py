@@ -41,7 +41,8 @@ from diorama_core.evaluation.metrics.scene import (
 )
 from diorama_core.evaluation.metrics.shape import chamfer, shape_distance
 from diorama_core.evaluation.reports import paper
-from diorama_core.evaluation.speed.bench import Series, speed_table
+from diorama_core.evaluation.speed.bench import speed_table
+from diorama_core.evaluation.speed.series import Series
 from diorama_core.progress import Progress
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Scene, yaw_rotation
