@@ -222,8 +222,8 @@ def fitted(questions: Sequence[Question], used: Bool[np.ndarray, " t"]) -> Float
     return weights
 
 
-def held_out(questions: Sequence[Question], used: Bool[np.ndarray, " t"]) -> tuple[float, dict[str, float]]:
-    """Negative log-likelihood and share of right supporters by source, each group fitted on the others."""
+def held_out(questions: Sequence[Question], used: Bool[np.ndarray, " t"]) -> dict[str, float]:
+    """Negative log-likelihood ("loss") and share of right supporters by source, each group fitted on the others."""
     loss, right, count = 0.0, Counter[str](), Counter[str]()
     for training, tested in _folds(questions, lambda q: q.group):
         w = fitted(training, used)
@@ -233,7 +233,7 @@ def held_out(questions: Sequence[Question], used: Bool[np.ndarray, " t"]) -> tup
             loss -= float(np.log(likely[q.right].sum() / likely.sum()))
             right[q.source] += int(q.right[int(np.argmin(cost))])
             count[q.source] += 1
-    return round(loss, 2), {source: round(right[source] / count[source], 3) for source in sorted(count)}
+    return {"loss": round(loss, 2), **{source: round(right[source] / count[source], 3) for source in sorted(count)}}
 
 
 def _folds(cases: Sequence[T], group: Callable[[T], str]) -> Iterator[tuple[list[T], list[T]]]:
@@ -281,18 +281,14 @@ def main() -> None:
         questions += photo_questions(annotated, photos, library, args.stages, columns)
     everything = np.ones(len(columns), dtype=bool)
     weights = fitted(questions, everything).round(3).tolist()
-    without = {}
-    for k, name in enumerate(columns[: len(TERMS)]):
-        loss, right = held_out(questions, np.arange(len(columns)) != k)
-        without[name] = {"loss": loss, **right}
-    loss, right = held_out(questions, np.arange(len(columns)) < len(TERMS))
-    without["usual places"] = {"loss": loss, **right}
-    loss, right = held_out(questions, everything)
+    numbers = np.arange(len(columns))
+    without = {name: held_out(questions, numbers != k) for k, name in enumerate(columns[: len(TERMS)])}
+    without["usual places"] = held_out(questions, numbers < len(TERMS))
     walls = {"measured": [s for s in standings if s.measured], "reasoned": [s for s in standings if not s.measured]}
     certificate = {
         "command": "scripts/fit_supports.py ANNOTATIONS PHOTOS ... --stages DIR",
         "objects": dict(Counter(q.source for q in questions)),
-        "held out": {"loss": loss, **right},
+        "held out": held_out(questions, everything),
         "without": without,
         "standing against walls, held out": {name: standing_score(cases) for name, cases in walls.items()},
     }

@@ -194,7 +194,8 @@ def run(
         progress: reports and cancellation.
     """
     of_key = {r.key: r for r in known if not r.failure}
-    done = {task.title: of_key[key] for task in asked.tasks if (key := task.key()) in of_key and _has_tile(task)}
+    drawn = (task for task in asked.tasks if task.tile is None or task.tile.is_file())
+    done = {task.title: of_key[key] for task in drawn if (key := task.key()) in of_key}
     waiting = [task for task in asked.tasks if task.title not in done]
 
     def take(task: PhotoTask, result: PhotoScores) -> None:
@@ -217,10 +218,6 @@ def run(
             take(task, build_photo(task, library, part))
     progress.report(1.0, "done")
     return so_far()
-
-
-def _has_tile(task: PhotoTask) -> bool:
-    return task.tile is None or task.tile.is_file()
 
 
 def read_results(path: Path) -> list[PhotoScores]:

@@ -15,7 +15,7 @@ from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, make_views, recipe, tried
 from diorama_core.evaluation.benchmarks.photo_perturbations import jittered
-from diorama_core.evaluation.benchmarks.substitution import substitute, with_true_masks
+from diorama_core.evaluation.benchmarks.substitution import substitute
 from diorama_core.evaluation.benchmarks.system_tables import (
     CaseResult,
     scene_table,
@@ -245,7 +245,7 @@ def build_case(
     def scored() -> tuple[Built, CaseResult]:
         inputs = way.inputs(view)
         if "masks" in way.truth:
-            inputs = with_true_masks(inputs, view)
+            inputs = replace(inputs, instances=view.inputs.instances, instance_boxes=view.inputs.instance_boxes)
         stages = (way.stages or embedded_stages)(inputs, searched)
         if "shape" in way.truth:  # the true shapes are not among those searched
             everything = embedded_stages(inputs, library)
