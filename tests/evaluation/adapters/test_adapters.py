@@ -12,7 +12,6 @@ from PIL import Image
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters import read_front3d, read_scan2cad, read_ssdb, read_sunrgbd
 from diorama_core.evaluation.adapters.front3d import rooms_of
-from diorama_core.geometry.rotations import rotation_from_quaternion
 
 SIZE = (64, 48)
 
@@ -154,8 +153,3 @@ def test_sunrgbd_polygons_and_depth(tmp_path):
     (folder / "intrinsics.txt").write_text("1 2 3")
     with pytest.raises(InputError, match="3 x 3"):
         read_sunrgbd(folder)
-
-
-def test_quaternions_turn_the_right_way():
-    R = rotation_from_quaternion(np.array([np.cos(np.pi / 4), 0, 0, np.sin(np.pi / 4)]) * 3)
-    assert np.allclose(R @ [1, 0, 0], [0, 1, 0])
