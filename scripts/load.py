@@ -203,12 +203,8 @@ def run(options: argparse.Namespace, servers: list[tuple[subprocess.Popen, int]]
     before = [used(process) for process, _ in servers]
     threads = [threading.Thread(target=work, args=(i,)) for i in range(options.clients)]
     port = servers[0][1]
-    if "half" in options.disturb:
-        threads.append(threading.Thread(target=half_requests, args=(port, until)))
-    if "slow" in options.disturb:
-        threads.append(threading.Thread(target=slow_reader, args=(port, until)))
-    if "flood" in options.disturb:
-        threads.append(threading.Thread(target=flood, args=(port,)))
+    disturbing = {"half": (half_requests, port, until), "slow": (slow_reader, port, until), "flood": (flood, port)}
+    threads += [threading.Thread(target=f, args=a) for name, (f, *a) in disturbing.items() if name in options.disturb]
     for thread in threads:
         thread.start()
     for thread in threads:

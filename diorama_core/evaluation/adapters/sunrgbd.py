@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -19,16 +18,8 @@ from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
 from diorama_core.perception.inputs import read_inputs
 
 
-@dataclass(frozen=True, eq=False)
-class SunScene:
-    """One picture with its annotation."""
-
-    name: str
-    inputs: Inputs
-
-
-def read_sunrgbd(folder: Path) -> SunScene:
-    """Read one picture's folder; `InputError` says what is missing."""
+def read_sunrgbd(folder: Path) -> Inputs:
+    """Read one picture's folder with its annotation; `InputError` says what is missing."""
     K = read_matrix(folder / "intrinsics.txt", 3, 3)
     depth = _only(folder / ("depth_bfx" if (folder / "depth_bfx").is_dir() else "depth"), "*.png")
     read = read_inputs(
@@ -39,10 +30,8 @@ def read_sunrgbd(folder: Path) -> SunScene:
         max_side=100_000,
     ).inputs
     instances, named = _polygons(folder, (read.photo.height, read.photo.width))
-    inputs = Inputs(
-        read.photo, tuple(b for _, b in named), instances, named, depth_m=read.depth_m, intrinsics=read.intrinsics
-    )
-    return SunScene(folder.name, inputs)
+    boxes = tuple(b for _, b in named)
+    return Inputs(read.photo, boxes, instances, named, depth_m=read.depth_m, intrinsics=read.intrinsics)
 
 
 def _only(folder: Path, pattern: str) -> Path:

@@ -141,8 +141,7 @@ def local_cases(dataset: Dataset, path: Path) -> Iterator[LocalCase]:
             yield _ssdb_case(read_ssdb(marker.parent))
     elif dataset == "sunrgbd":
         for marker in sorted(path.rglob("intrinsics.txt")):
-            scene = read_sunrgbd(marker.parent)
-            yield LocalCase(scene.name, scene.inputs)
+            yield LocalCase(marker.parent.name, read_sunrgbd(marker.parent))
     else:
         annotations = path / "full_annotations.json"
         for scan in sorted(str(r["id_scan"]) for r in read_json(annotations)):

@@ -146,10 +146,10 @@ def test_sunrgbd_polygons_and_depth(tmp_path):
     index = {"frames": [{"polygon": polygons}], "objects": [{"name": "bed"}, {"name": "wall"}, {"name": "pillow:1"}]}
     (folder / "annotation2Dfinal").mkdir()
     (folder / "annotation2Dfinal" / "index.json").write_text(json.dumps(index))
-    scene = read_sunrgbd(folder)
-    assert [b.category for _, b in scene.inputs.instance_boxes] == ["bed", "pillow"]
-    assert np.allclose(scene.inputs.depth_m, 3.0, atol=0.002)
-    assert (scene.inputs.instances[12:18, 12:18] == 2).all()
+    inputs = read_sunrgbd(folder)
+    assert [b.category for _, b in inputs.instance_boxes] == ["bed", "pillow"]
+    assert np.allclose(inputs.depth_m, 3.0, atol=0.002)
+    assert (inputs.instances[12:18, 12:18] == 2).all()
     (folder / "intrinsics.txt").write_text("1 2 3")
     with pytest.raises(InputError, match="3 x 3"):
         read_sunrgbd(folder)
