@@ -148,7 +148,7 @@ def _faces(scene: Scene, normal: Float[np.ndarray, "3"], front_deg: float | None
 
 def _rendered(view: TruthView, scene: Scene) -> dict[str, frozenset[str]]:
     matched = Matched.of(view, scene)
-    there, names, found = matched.scene, {true: item.id for true, item in matched.found.items()}, {}
+    there, names, found = matched.scene, {true: item.id for true, item in matched.counterparts.items()}, {}
     for edge in true_supports(view):
         if edge.child not in names:
             continue
@@ -165,7 +165,7 @@ def _rendered(view: TruthView, scene: Scene) -> dict[str, frozenset[str]]:
 def _standings(group: str, view: TruthView, scene: Scene, noise: ObservationNoise) -> Iterator[Standing]:
     """How every object on the floor stands to every wall that was found."""
     matched = Matched.of(view, scene)
-    there, built = matched.scene, matched.found
+    there, built = matched.scene, matched.counterparts
     floors = {p.id for p in view.scene.architecture.by_role("floor")}
     for true in (view.scene.objects[k] for k in view.indices):
         edge = view.scene.support_of(true.id)

@@ -13,7 +13,7 @@ from diorama_core.architecture.acdc import AcdcRoom
 from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.architecture.rac.stage import RenderAndCompareRoom
 from diorama_core.artefacts import Inputs
-from diorama_core.evaluation.benchmarks.cases import LeftOut, make_views, recipe, tried
+from diorama_core.evaluation.benchmarks.cases import LeftOut, attempt_one, make_views, recipe
 from diorama_core.evaluation.metrics.architecture import ArchitectureScores, architecture_scores
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Column, Figure, Row, Table, bootstrap_interval, figures_table, mean
@@ -125,7 +125,7 @@ def _room(
 ) -> RoomResult:
     begun = time.process_time()
 
-    def scored() -> RoomResult:
+    def score() -> RoomResult:
         nonlocal begun
         stages = embedded_stages(inputs, library)
         found = evaluate(stages, {"given": inputs}, ("objects", "supported_geometry"), Runner(None))
@@ -136,7 +136,7 @@ def _room(
         planes, true = room.architecture.planes, view.scene.architecture.planes
         return RoomResult(case, architecture_scores(planes, true, view.camera, found_camera=geometry.camera), spent)
 
-    result, _ = tried(case, scored)
+    result, _ = attempt_one(case, score)
     return result or RoomResult(case, None, time.process_time() - begun)
 
 

@@ -101,14 +101,14 @@ def attempt(
 ) -> Iterator[tuple[Case, Made]]:
     """Whatever is made of each case; what could not be made is added to `left_out`, and the next one follows."""
     for case in cases:
-        result, reason = tried(case.name, make, case, fate="is left out")
+        result, reason = attempt_one(case.name, make, case, fate="is left out")
         if result is None:
             left_out.append(LeftOut(case.name, reason))
         else:
             yield case, result
 
 
-def tried(name: str, work: Callable[..., Made], *given: object, fate: str = "failed") -> tuple[Made | None, str]:
+def attempt_one(name: str, work: Callable[..., Made], *given: object, fate: str = "failed") -> tuple[Made | None, str]:
     """What work makes of what it is given; where it fails, None and why, and the log says what becomes of `name`.
 
     Raises:

@@ -21,7 +21,7 @@ from diorama_core.evaluation.adapters.files import read_json
 from diorama_core.evaluation.adapters.scan2cad import AlignedModel, ScanFrame, read_scan2cad
 from diorama_core.evaluation.adapters.ssdb import SsdbScene, read_ssdb
 from diorama_core.evaluation.adapters.sunrgbd import read_sunrgbd
-from diorama_core.evaluation.benchmarks.cases import tried
+from diorama_core.evaluation.benchmarks.cases import attempt_one
 from diorama_core.evaluation.metrics.pose import Placed, object_alignment
 from diorama_core.evaluation.metrics.scene import (
     as_placed,
@@ -164,7 +164,7 @@ def _measure(case: LocalCase, library: ShapeLibrary, progress: Progress) -> Loca
     models = () if case.frame is None else tuple(m for m in case.frame.models if _is_in_picture(m, case.frame))
     begun = time.process_time()
 
-    def measured() -> LocalResult:
+    def measure() -> LocalResult:
         scene = build_scene(case.inputs, library, progress=Progress(token=progress.token)).scene
         spent = time.process_time() - begun
         by_mask = {o.mask_id: o for o in scene.objects if o.mask_id is not None}
@@ -186,7 +186,7 @@ def _measure(case: LocalCase, library: ShapeLibrary, progress: Progress) -> Loca
             "" if scene.objects else "no object came out",
         )
 
-    result, failure = tried(case.name, measured)
+    result, failure = attempt_one(case.name, measure)
     if result is not None:
         return result
     missed, relation = tuple((m.category, False) for m in models), None if case.parents is None else 0.0

@@ -19,7 +19,7 @@ import trimesh
 from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.appearance.photo_appearance import PhotoAppearance
-from diorama_core.evaluation.benchmarks.cases import make_views, recipe, tried
+from diorama_core.evaluation.benchmarks.cases import attempt_one, make_views, recipe
 from diorama_core.evaluation.benchmarks.pose_comparison import (
     ESTIMATED_DEPTH,
     REMOVED,
@@ -154,7 +154,7 @@ def run(
         for turn, given in enumerate(GIVEN):
             progress.report((number + turn / len(GIVEN)) / len(cases), f"{case.name}: {given}")
             name = f"{case.name} with {given}"
-            result, _ = tried(name, _one_room, case.name, view, given, library, show, fate="is left out")
+            result, _ = attempt_one(name, _one_room, case.name, view, given, library, show, fate="is left out")
             if result is None:
                 continue
             looks, times, off_deg = result

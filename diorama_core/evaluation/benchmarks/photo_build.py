@@ -25,7 +25,7 @@ from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.artefacts import DetectedObject
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto
-from diorama_core.evaluation.benchmarks.cases import tried
+from diorama_core.evaluation.benchmarks.cases import attempt_one
 from diorama_core.evaluation.benchmarks.photo_perturbations import AnnotatedInputs, perturb
 from diorama_core.evaluation.benchmarks.system import Show
 from diorama_core.evaluation.metrics.annotated import ObjectResult, measure, not_built
@@ -231,7 +231,7 @@ def build_photo(task: PhotoTask, library: ShapeLibrary, progress: Progress = SIL
     """
     begun, key = time.process_time(), task.key()
 
-    def compared() -> PhotoScores:
+    def compare() -> PhotoScores:
         case = read_annotated_inputs(task)
         stages = with_settings(embedded_stages(case.inputs, library), task.settings)
         built = build_scene(case.inputs, library, stages=stages, cache=task.cache, progress=progress)
@@ -242,7 +242,7 @@ def build_photo(task: PhotoTask, library: ShapeLibrary, progress: Progress = SIL
         ghosts = floor_ghosts(built), ghosts_unmarked(built)
         return PhotoScores(task.name, objects, *ghosts, spent, "", task.perturbation, key)
 
-    result, failure = tried(task.title, compared)
+    result, failure = attempt_one(task.title, compare)
     if result is not None:
         return result
     wrong = tuple(not_built(task.name, i, annotated) for i, annotated in enumerate(task.annotation.objects))

@@ -71,11 +71,11 @@ def mirror(case: AnnotatedInputs, _: np.random.Generator) -> AnnotatedInputs:
 def jitter(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
     """Given boxes whose edges are off; the annotation stays where it was."""
     photo = case.inputs.photo
-    moved = (replace(b, box=jittered(b.box, (photo.width, photo.height), JITTER, rng)) for b in case.inputs.boxes)
+    moved = (replace(b, box=jitter_box(b.box, (photo.width, photo.height), JITTER, rng)) for b in case.inputs.boxes)
     return replace(case, inputs=replace(case.inputs, boxes=tuple(moved)))
 
 
-def jittered(box: Box, size: tuple[int, int], share: float, rng: np.random.Generator) -> Box:
+def jitter_box(box: Box, size: tuple[int, int], share: float, rng: np.random.Generator) -> Box:
     """A box whose edges are off, as what people and detectors draw is.
 
     Args:

@@ -82,20 +82,20 @@ def overall_table(results: Results, *, named: bool, missing: Sequence[str] = ())
 
 def fronts_table(results: Results) -> Table:
     """Fronts by the true kind, the most frequent first."""
-    of = _grouped((o.kind, o.front) for r in results for o in r.objects if o.front is not None)
+    of = _group((o.kind, o.front) for r in results for o in r.objects if o.front is not None)
     rows = tuple(_right_row(kind, of[kind]) for kind in sorted(of, key=lambda kind: (-len(of[kind]), kind)))
     return Table("Fronts by kind", (_OBJECTS, Column("front", better="↑")), rows, "Right within 45 degrees.")
 
 
 def form_table(results: Results) -> Table:
     """The attributes of form."""
-    of = _grouped(pair for r in results for o in r.objects for pair in o.form.items())
+    of = _group(pair for r in results for o in r.objects for pair in o.form.items())
     rows = tuple(_right_row(name, right) for name, right in sorted(of.items()))
     note = "Of objects whose annotation and whose chosen shape's design both state the attribute."
     return Table("Form", (_OBJECTS, Column("right", better="↑")), rows, note)
 
 
-def _grouped(pairs: Iterable[tuple[str, bool]]) -> dict[str, list[bool]]:
+def _group(pairs: Iterable[tuple[str, bool]]) -> dict[str, list[bool]]:
     of: dict[str, list[bool]] = {}
     for name, right in pairs:
         of.setdefault(name, []).append(right)

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import TypeVar
 
 from diorama_core.artefacts import RankedShapes
-from diorama_core.evaluation.benchmarks.cases import make_views, recipe, tried
+from diorama_core.evaluation.benchmarks.cases import attempt_one, make_views, recipe
 from diorama_core.evaluation.benchmarks.pose_comparison import (
     BASELINES,
     COMPARED_SHAPES,
@@ -182,7 +182,7 @@ def _scenes(
 
 def _try(work: Callable[..., Result], *given: object) -> Result | None:
     """The result, or None when a stage failed."""
-    return tried("a room", work, *given)[0]
+    return attempt_one("a room", work, *given)[0]
 
 
 def _arrange(
@@ -220,7 +220,7 @@ def _arrange(
 def with_true_graph(view: TruthView, scene: Scene) -> Scene:
     """The prediction with the true support edges among the objects that were found; planes by role and nearness."""
     matched = Matched.of(view, scene)
-    scene, names = matched.scene, {true: item.id for true, item in matched.found.items()}
+    scene, names = matched.scene, {true: item.id for true, item in matched.counterparts.items()}
     edges = []
     for edge in true_supports(view):
         if edge.child in names:
@@ -267,7 +267,7 @@ def with_true_architecture(view: TruthView, scene: Scene) -> Scene:
 def _count_groups(
     view: TruthView, scene: Scene | None, library: ShapeLibrary, groups: dict[str, list[ObjectShares]]
 ) -> None:
-    true, placed = Matched.of(view, Scene() if scene is None else scene).placed(library)
+    true, placed = Matched.of(view, Scene() if scene is None else scene).poses(library)
     checks = pair_checks(true, placed)
     grids, others = (checks.rotation, checks.translation, checks.scale, checks.all_three), max(len(true) - 1, 1)
     for row, index in enumerate(view.indices):

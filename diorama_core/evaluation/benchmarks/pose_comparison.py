@@ -87,7 +87,7 @@ def pose_scores(view: TruthView, scene: Scene | None, library: ShapeLibrary) -> 
     if scene is None:
         return PoseScores.failure(len(view.indices))
     matched = Matched.of(view, scene)
-    true, placed = matched.placed(library)
+    true, placed = matched.poses(library)
     pairs, every = scene_alignment(true, placed)
     layout = structure_of(matched.scene, library)
     return PoseScores(

@@ -150,7 +150,7 @@ class RelationsBench:
         return {"seed": self.seed, "rooms": self.rooms, "tables": [t.to_json() for t in self.tables()]}
 
 
-def _metered(settings: LmmSettings, asked: list[AskedSupport]) -> Reader:
+def _meter(settings: LmmSettings, asked: list[AskedSupport]) -> Reader:
     """Asks a language model for the supports, and notes what that took."""
 
     def supports(inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry) -> tuple[Support, ...]:
@@ -195,7 +195,7 @@ def run(
         counts[PHOTO_ALONE] += relations_of(view, with_depth=False)
         if settings is not None:
             asked.append(_recognise(view.inputs.photo, settings))
-            result = relations_of(view, with_depth=True, reader=_metered(settings, asked))
+            result = relations_of(view, with_depth=True, reader=_meter(settings, asked))
             counts[BY_MODEL] = counts.get(BY_MODEL, RelationCount()) + result
     model = "" if settings is None else settings.model
     return RelationsBench(seed, scenes - len(left_out), tuple(counts.items()), model, tuple(asked))

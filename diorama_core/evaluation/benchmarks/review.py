@@ -130,7 +130,7 @@ class Reviewed:
 
 
 def likeliest_plane(scene: Scene, question: Question, role: PlaneRole) -> str | None:
-    """Of the planes with a role the one that a question names first, else any."""
+    """The plane of a role that a question names first; else any with that role."""
     planes = [p.id for p in scene.architecture.by_role(role)]
     return next((c.value for c in question.choices if c.value in planes), next(iter(planes), None))
 

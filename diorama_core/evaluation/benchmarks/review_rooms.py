@@ -70,7 +70,7 @@ class KnownRoom:
 
     def score(self, scene: Scene) -> tuple[float, int]:
         """How many of the objects that the photo shows are where, as large and turned as in the room."""
-        alignment = object_alignment(*Matched.of(self.view, scene).placed(self.all_shapes))
+        alignment = object_alignment(*Matched.of(self.view, scene).poses(self.all_shapes))
         return alignment.acc * alignment.count, alignment.count
 
     def answer(self, scene: Scene, question: Question) -> str | None:
@@ -133,7 +133,7 @@ def run(
     for _, view in attempt(cases, view_of, left_out):
         given: Inputs = photo_only(view) if named else without_names(view)
         scene = build_scene(given, searched, stages=embedded_stages(given, searched)).scene
-        truth = {item.id: view.scene.object(name) for name, item in Matched.of(view, scene).found.items()}
+        truth = {item.id: view.scene.object(name) for name, item in Matched.of(view, scene).counterparts.items()}
         rooms.append(KnownRoom(scene, view, truth, searched, library))
     progress.report(1.0, "done")
     return RoomReview(named, tuple(rooms), tuple(left_out))

@@ -13,8 +13,8 @@ import numpy as np
 
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, make_views, recipe, tried
-from diorama_core.evaluation.benchmarks.photo_perturbations import jittered
+from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, attempt_one, make_views, recipe
+from diorama_core.evaluation.benchmarks.photo_perturbations import jitter_box
 from diorama_core.evaluation.benchmarks.substitution import substitute
 from diorama_core.evaluation.benchmarks.system_tables import (
     CaseResult,
@@ -90,7 +90,7 @@ def jitter(view: TruthView) -> Inputs:
     """The picture with every edge of every box off by 4 % of the box (standard deviation), as detectors' are."""
     given, k = photo_only(view), view.camera.intrinsics
     rng = np.random.default_rng(len(view.indices))
-    moved = (replace(b, box=jittered(b.box, (k.width, k.height), BOX_JITTER, rng)) for b in given.boxes)
+    moved = (replace(b, box=jitter_box(b.box, (k.width, k.height), BOX_JITTER, rng)) for b in given.boxes)
     return replace(given, boxes=tuple(moved))
 
 
@@ -242,7 +242,7 @@ def build_case(
     """
     begun, wall = time.process_time(), time.perf_counter()
 
-    def scored() -> tuple[Built, CaseResult]:
+    def score() -> tuple[Built, CaseResult]:
         inputs = way.inputs(view)
         if "masks" in way.truth:
             inputs = replace(inputs, instances=view.inputs.instances, instance_boxes=view.inputs.instance_boxes)
@@ -259,7 +259,7 @@ def build_case(
         failure = "" if made.scene.objects else "no object came out"
         return made, CaseResult(case.name, scores, spent, waited, failure, before)
 
-    result, failure = tried(case.name, scored)
+    result, failure = attempt_one(case.name, score)
     if result is not None:
         return result
     spent, waited = time.process_time() - begun, time.perf_counter() - wall

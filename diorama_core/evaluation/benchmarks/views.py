@@ -16,7 +16,16 @@ import manifold3d
 import numpy as np
 
 from diorama_core.artefacts import Inputs, Photo
-from diorama_core.evaluation.benchmarks.cases import MIN_ASKED, SIZE, Case, LeftOut, attempt, furnish, recipe, tried
+from diorama_core.evaluation.benchmarks.cases import (
+    MIN_ASKED,
+    SIZE,
+    Case,
+    LeftOut,
+    attempt,
+    attempt_one,
+    furnish,
+    recipe,
+)
 from diorama_core.evaluation.metrics.pose import Alignment, nothing_right, object_alignment, pool
 from diorama_core.evaluation.metrics.scene import Matched
 from diorama_core.evaluation.reports.tables import Column, Figure, Table, bootstrap_interval, figures_table, mean
@@ -234,12 +243,12 @@ class _Room:
     def score(self, way: str, views: Sequence[RoomView], build: Callable[[Sequence[RoomView]], Scene]) -> ViewsResult:
         """The own alignment of the first photo's objects; a build that fails has none right."""
         begun, truth = time.process_time(), views[0].truth
-        scene, failure = tried(f"{self.case.name}, {way}", build, views)
+        scene, failure = attempt_one(f"{self.case.name}, {way}", build, views)
         seconds = time.process_time() - begun
         if scene is None:
             return ViewsResult(self.case.name, way, nothing_right(len(truth.indices))[2], seconds, failure)
         matched = Matched.of(truth, scene)
-        alignment = object_alignment(*matched.placed(self.library))
+        alignment = object_alignment(*matched.poses(self.library))
         return ViewsResult(self.case.name, way, alignment, seconds, "", *_room_agreement(matched.scene, truth.scene))
 
 

@@ -136,11 +136,11 @@ class Matched:
         return cls(scene, truth, tuple(match))
 
     @property
-    def found(self) -> dict[str, SceneObject]:
+    def counterparts(self) -> dict[str, SceneObject]:
         """What stands for the true objects that were found, by their ids."""
         return {t.id: m for t, m in zip(self.truth, self.match, strict=True) if m is not None}
 
-    def placed(self, library: ShapeLibrary) -> tuple[list[Placed], list[Placed | None]]:
+    def poses(self, library: ShapeLibrary) -> tuple[list[Placed], list[Placed | None]]:
         """True and predicted poses as the alignment metrics read them."""
         true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in self.truth]
         return true, [None if m is None else as_placed(m) for m in self.match]
@@ -158,7 +158,7 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
     if not scene.objects:
         return SceneScores.failure(len(view.indices))
     height_off, matched = _height_off(scene, view), Matched.of(view, scene)
-    scene, (true, placed) = matched.scene, matched.placed(library)
+    scene, (true, placed) = matched.scene, matched.poses(library)
     pairs, every = scene_alignment(true, placed)
     found = [(t, m) for t, m in zip(matched.truth, matched.match, strict=True) if m is not None]
     layout = structure_of(scene, library)
@@ -222,7 +222,7 @@ def as_placed(item: SceneObject, symmetry: int = 1) -> Placed:
 
 def relation_accuracy(view: TruthView, matched: Matched) -> float:
     """Share of true edges found: the same parent object, or a plane of the same role, and the same relation."""
-    scene, names = matched.scene, {name: item.id for name, item in matched.found.items()}
+    scene, names = matched.scene, {name: item.id for name, item in matched.counterparts.items()}
     edges = true_supports(view)
     right = 0
     for edge in edges:
@@ -249,7 +249,7 @@ def true_support_share(view: TruthView, matched: Matched, library: ShapeLibrary)
 
     For a plane any plane of the same role stands; whatever the scene's own graph says does not count.
     """
-    scene, found, edges, good = matched.scene, matched.found, true_supports(view), 0
+    scene, found, edges, good = matched.scene, matched.counterparts, true_supports(view), 0
     for edge in edges:
         if view.scene.has_plane(edge.parent):
             parents = [p.id for p in scene.architecture.by_role(view.scene.plane(edge.parent).role)]
