@@ -14,13 +14,14 @@ import argparse
 import json
 import os
 import resource
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
+from typing import TypeVar
+from unittest.mock import patch
 
 import numpy as np
 import trimesh
@@ -35,6 +36,7 @@ from diorama_core.library.store.features import INDEX_FOLDER, FeatureMatrix
 from diorama_core.library.store.vectors import LanceIndex
 from diorama_core.render.templates import PAPER_GRID, render_templates
 
+T = TypeVar("T")
 WIDTH = 512
 NEAREST = 50
 QUERIES = 100
@@ -73,17 +75,12 @@ def main() -> int:
     parser.add_argument("--json", type=Path, metavar="FILE")
     arguments = parser.parse_args()
     rows: list[Row] = []
-
-    def show(row: Row) -> None:
-        rows.append(row)
-        sys.stdout.write(row.line() + "\n")
-        sys.stdout.flush()
-
-    sys.stdout.write(f"{'':<46} {'shapes':>9}  {'wall':>10}  {'processor':>10}\n")
+    print(f"{'':<46} {'shapes':>9}  {'wall':>10}  {'processor':>10}")
     for row in measured(arguments):
-        show(row)
+        rows.append(row)
+        print(row.line(), flush=True)
     for line in growth(rows):
-        sys.stdout.write(line + "\n")
+        print(line)
     if arguments.json:
         arguments.json.write_text(json.dumps([asdict(r) for r in rows], indent=1))
     return 0
@@ -109,62 +106,52 @@ def measured(arguments: argparse.Namespace) -> Iterator[Row]:
 
 def measure_templates() -> Iterator[Row]:
     """One core's views a second, of a ball (which fills its views) and of a thing with about as many triangles."""
-    ball = trimesh.creation.icosphere(subdivisions=5)
-    library = built_in_library()
-    with _cpu() as used:
-        render_templates(ball)
-    rate = len(PAPER_GRID) / used.cpu
-    yield Row(f"180 views, ball of {len(ball.faces):,} triangles: {rate:.0f}/s", 0, used.wall, used.cpu, "60/s a core")
-    sofa = library.mesh("sofa-chesterfield")
-    with _cpu() as used:
-        render_templates(sofa)
-    rate = len(PAPER_GRID) / used.cpu
-    yield Row(f"180 views, sofa of {len(sofa.faces):,} triangles: {rate:.0f}/s", 0, used.wall, used.cpu, "60/s a core")
+    meshes = {"ball": trimesh.creation.icosphere(subdivisions=5), "sofa": built_in_library().mesh("sofa-chesterfield")}
+    for name, mesh in meshes.items():
+        _, wall, cpu = _timed(partial(render_templates, mesh))
+        rate = len(PAPER_GRID) / cpu
+        yield Row(f"180 views, {name} of {len(mesh.faces):,} triangles: {rate:.0f}/s", 0, wall, cpu, "60/s a core")
 
 
 def measure_built_in_start() -> Iterator[Row]:
     """Opening the built-in library and listing it."""
-    yield _best("built-in library: open and list", len(built_in_library().shapes()), _built_in_listed, "under 1 s")
+    yield _best(
+        "built-in library: open and list",
+        len(built_in_library().shapes()),
+        lambda: built_in_library().shapes(),
+        "under 1 s",
+    )
 
 
 def measure_built_in_build() -> Row:
     """Preparing every built-in shape in an empty cache, on all cores."""
     from diorama_core.pipeline.prepare import prepare_library
 
-    before = os.environ.get("DIORAMA_CACHE")
-    with tempfile.TemporaryDirectory() as folder:
-        os.environ["DIORAMA_CACHE"] = folder
-        with _cpu() as used:
-            count = prepare_library().count
-    if before is None:
-        del os.environ["DIORAMA_CACHE"]
-    else:
-        os.environ["DIORAMA_CACHE"] = before
-    return Row("built-in library: built from nothing", count, used.wall, used.cpu, "under 60 s on two cores")
+    with tempfile.TemporaryDirectory() as folder, patch.dict(os.environ, DIORAMA_CACHE=folder):
+        made, *took = _timed(prepare_library)
+    return Row("built-in library: built from nothing", made.count, *took, "under 60 s on two cores")
 
 
 def measure_ingestion(models: Path) -> Row:
     """Bringing in a folder of models, with surfaces and thumbnails."""
     from diorama_app.cli import main as diorama
 
-    with tempfile.TemporaryDirectory() as folder, _cpu() as used:
-        status = diorama(["library", "add", str(models), "--name", f"{folder}/models"])
+    with tempfile.TemporaryDirectory() as folder:
+        words = ["library", "add", str(models), "--name", f"{folder}/models"]
+        status, *took = _timed(lambda: diorama(words))
         count = len(StoredLibrary(Path(folder) / "models"))
-    return Row(f"ingestion (exit status {status})", count, used.wall, used.cpu, "128 models under 3 minutes")
+    return Row(f"ingestion (exit status {status})", count, *took, "128 models under 3 minutes")
 
 
 def measure_store(size: int, folder: Path, *, index: bool) -> Iterator[Row]:
     """A synthetic library of a size: written, opened, read, searched by words and by features."""
-    with _cpu() as used:
-        write_synthetic(StoredLibrary(folder / "library", create=True), size)
-    yield Row("records: written", size, used.wall, used.cpu)
-    yield _best("records: library opened and listed", size, lambda: StoredLibrary(folder / "library").shapes(), "1 s")
-    library = StoredLibrary(folder / "library")
+    stored = partial(StoredLibrary, folder / "library")
+    yield _best("records: written", size, lambda: write_synthetic(stored(create=True), size), times=1)
+    yield _best("records: library opened and listed", size, lambda: stored().shapes(), "1 s")
+    library = stored()
     library.shapes()
     yield _best("records: one with its surfaces", size, lambda: library.shape(f"synthetic-{size // 2:07d}"))
-    with _cpu() as used:
-        find(library, "first words")
-    yield Row("words: first search (index made)", size, used.wall, used.cpu)
+    yield _best("words: first search (index made)", size, lambda: find(library, "first words"), times=1)
     yield _best("words: 'small rustic oak table'", size, lambda: find(library, "small rustic oak table", NEAREST))
     yield from measure_features(size, folder, index=index)
 
@@ -172,11 +159,10 @@ def measure_store(size: int, folder: Path, *, index: bool) -> Iterator[Row]:
 def measure_features(size: int, folder: Path, *, index: bool) -> Iterator[Row]:
     """Synthetic features of a size: written, opened, searched row by row, and by an index."""
     values = synthetic_features(size)
-    with _cpu() as used:
-        FeatureMatrix(folder / "features", WIDTH).append([f"h{i}" for i in range(size)], values)
-    yield Row("features: written", size, used.wall, used.cpu)
-    yield _best("features: opened", size, lambda: FeatureMatrix(folder / "features", WIDTH))
-    matrix = FeatureMatrix(folder / "features", WIDTH)
+    keys, opened = [f"h{i}" for i in range(size)], partial(FeatureMatrix, folder / "features", WIDTH)
+    yield _best("features: written", size, lambda: opened().append(keys, values), times=1)
+    yield _best("features: opened", size, opened)
+    matrix = opened()
     rng = np.random.default_rng(1)
     queries = values[rng.integers(size, size=QUERIES), 0] + 0.02 * rng.standard_normal((QUERIES, WIDTH))
     del values
@@ -188,15 +174,12 @@ def measure_features(size: int, folder: Path, *, index: bool) -> Iterator[Row]:
 
 def measure_index(matrix: FeatureMatrix, queries: np.ndarray) -> Iterator[Row]:
     """The LanceDB index of a matrix: made, asked, and compared with what comparing every row finds."""
-    with _cpu() as used:
-        made = LanceIndex(matrix)
+    made, *took = _timed(lambda: LanceIndex(matrix))
     disk = sum(f.stat().st_size for f in (matrix.folder / INDEX_FOLDER).rglob("*") if f.is_file()) / 1e9
-    yield Row(f"LanceDB index: made, {disk:.2f} GB on disk", len(matrix), used.wall, used.cpu, f"{_memory_gb():.1f} GB")
-    found = []
-    with _cpu() as used:
-        found = [made.top(query, NEAREST) for query in queries]
-    each = len(queries)
-    yield Row(f"LanceDB index: nearest {NEAREST}", len(matrix), used.wall / each, used.cpu / each)
+    yield Row(f"LanceDB index: made, {disk:.2f} GB on disk", len(matrix), *took, f"{_memory_gb():.1f} GB")
+    found, *took = _timed(lambda: [made.top(query, NEAREST) for query in queries])
+    wall, cpu = (seconds / len(queries) for seconds in took)
+    yield Row(f"LanceDB index: nearest {NEAREST}", len(matrix), wall, cpu)
     shares = [
         len({n.key for n in near} & {n.key for n in matrix.top(query, NEAREST)}) / NEAREST
         for near, query in zip(found, queries, strict=True)
@@ -253,31 +236,17 @@ def growth(rows: list[Row]) -> Iterator[str]:
             yield f"{name}: {longer:.1f} times the processor time for {more:.0f} times the shapes"
 
 
-@dataclass
-class _Used:
-    wall: float = 0.0
-    cpu: float = 0.0
-
-
-@contextmanager
-def _cpu() -> Iterator[_Used]:
-    used, wall, cpu = _Used(), time.perf_counter(), time.process_time()
-    yield used
-    used.wall, used.cpu = time.perf_counter() - wall, time.process_time() - cpu
+def _timed(call: Callable[[], T]) -> tuple[T, float, float]:
+    """What a call gives, and the seconds that it takes by the clock and of the processor."""
+    wall, cpu = time.perf_counter(), time.process_time()
+    value = call()
+    return value, time.perf_counter() - wall, time.process_time() - cpu
 
 
 def _best(what: str, shapes: int, call: Callable[[], object], asked: str = "", times: int = 7) -> Row:
     """The best of several calls."""
-    best = _Used(np.inf, np.inf)
-    for _ in range(times):
-        with _cpu() as used:
-            call()
-        best = _Used(min(best.wall, used.wall), min(best.cpu, used.cpu))
-    return Row(what, shapes, best.wall, best.cpu, asked)
-
-
-def _built_in_listed() -> object:
-    return built_in_library().shapes()
+    wall, cpu = np.min([_timed(call)[1:] for _ in range(times)], axis=0).tolist()
+    return Row(what, shapes, wall, cpu, asked)
 
 
 def _shown(seconds: float) -> str:

@@ -17,7 +17,7 @@ from typing import Any
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import checkpoint_arguments, read_checkpoint, write_graph
+from diorama_core.models.onnx_export import Weights, checkpoint_arguments, read_checkpoint, write_graph
 
 HEAD = 64
 """Channels of an attention head in every CLIP transformer."""
@@ -26,23 +26,14 @@ PREFIXES = ("duoduoclip.visual.", "visual.")
 SETTINGS = ("model", "network", "layers_threshold")
 
 
-class ShapeTower(torch.nn.Module):
+class ShapeTower(Weights):
     """Normalised views [1, V, 3, 224, 224] of one shape to its vector [1, 512]."""
 
     def __init__(self, weights: Mapping[str, torch.Tensor], alone: int) -> None:
         """`weights` by their names below `visual.`; the first `alone` layers see each view by itself."""
-        super().__init__()
-        for name, value in weights.items():
-            self.register_buffer(name.replace(".", "__"), value.float())
+        super().__init__(weights)
         self.layers = 1 + max(int(n.split(".")[2]) for n in weights if n.startswith("transformer.resblocks."))
         self.alone = alone
-
-    def _w(self, name: str) -> torch.Tensor:
-        return self.get_buffer(name.replace(".", "__"))
-
-    def _norm(self, x: torch.Tensor, name: str) -> torch.Tensor:
-        weight = self._w(f"{name}.weight")
-        return functional.layer_norm(x, (weight.numel(),), weight, self._w(f"{name}.bias"))
 
     def _attended(self, x: torch.Tensor, layer: str) -> torch.Tensor:
         """Self-attention among the tokens [batch, tokens, width] of each row of the batch."""
@@ -51,15 +42,10 @@ class ShapeTower(torch.nn.Module):
         q, k, v = (part.unflatten(-1, (width // HEAD, HEAD)).transpose(1, 2) for part in mixed.chunk(3, dim=-1))
         share = torch.softmax(q @ k.transpose(-1, -2) * HEAD**-0.5, dim=-1)
         joined = (share @ v).transpose(1, 2).flatten(-2)
-        return functional.linear(
-            joined, self._w(f"{layer}.attn.out_proj.weight"), self._w(f"{layer}.attn.out_proj.bias")
-        )
+        return self._linear(joined, f"{layer}.attn.out_proj")
 
     def _widened(self, x: torch.Tensor, layer: str) -> torch.Tensor:
-        inner = functional.gelu(
-            functional.linear(x, self._w(f"{layer}.mlp.c_fc.weight"), self._w(f"{layer}.mlp.c_fc.bias"))
-        )
-        return functional.linear(inner, self._w(f"{layer}.mlp.c_proj.weight"), self._w(f"{layer}.mlp.c_proj.bias"))
+        return self._linear(functional.gelu(self._linear(x, f"{layer}.mlp.c_fc")), f"{layer}.mlp.c_proj")
 
     def forward(self, views: torch.Tensor) -> torch.Tensor:
         kernel = self._w("conv1.weight")

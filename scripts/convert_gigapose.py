@@ -17,27 +17,12 @@ from typing import Any
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import checkpoint_arguments, read_checkpoint, write_graph
+from diorama_core.models.onnx_export import Weights, checkpoint_arguments, read_checkpoint, write_graph
 
 SIDE, INNER_SIDE = 224, 256
 """Of the crops, and of what the backbone enlarges them to."""
 STAGES = (1, 2, 2, 2)
 """Strides of the residual stages, two blocks each, after a first convolution of stride 2."""
-
-
-class Weights(torch.nn.Module):
-    """The weights below one name of a checkpoint, and the layers that use them."""
-
-    def __init__(self, weights: Mapping[str, torch.Tensor]) -> None:
-        super().__init__()
-        for name, value in weights.items():
-            self.register_buffer(name.replace(".", "__"), value.float())
-
-    def _w(self, name: str) -> torch.Tensor:
-        return self.get_buffer(name.replace(".", "__"))
-
-    def _has(self, name: str) -> bool:
-        return hasattr(self, name.replace(".", "__"))
 
 
 class Backbone(Weights):
@@ -52,7 +37,7 @@ class Backbone(Weights):
             self._normed(functional.conv2d(x, self._w(f"{name}.conv1.weight"), stride=stride, padding=1), f"{name}.bn1")
         )
         y = self._normed(functional.conv2d(y, self._w(f"{name}.conv2.weight"), padding=1), f"{name}.bn2")
-        if self._has(f"{name}.downsample.0.weight"):
+        if hasattr(self, f"{name}.downsample.0.weight".replace(".", "__")):
             x = functional.conv2d(x, self._w(f"{name}.downsample.0.weight"), stride=stride)
             x = self._normed(x, f"{name}.downsample.1")
         return functional.relu(x + y)
@@ -71,7 +56,7 @@ class Regressor(Weights):
 
     def _mlp(self, x: torch.Tensor, name: str) -> torch.Tensor:
         for layer in (0, 2, 4):
-            x = functional.linear(x, self._w(f"{name}.{layer}.weight"), self._w(f"{name}.{layer}.bias"))
+            x = self._linear(x, f"{name}.{layer}")
             x = functional.relu(x) if layer < 4 else x
         return x
 

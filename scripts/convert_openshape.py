@@ -16,7 +16,7 @@ from typing import Any
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import checkpoint_arguments, read_checkpoint, write_graph
+from diorama_core.models.onnx_export import Weights, checkpoint_arguments, read_checkpoint, write_graph
 from diorama_core.models.openshape import NEIGHBOURS, PATCHES
 
 HEAD = 64
@@ -25,27 +25,13 @@ PREFIXES = ("module.", "pc_encoder.", "")
 FIRST = "ppat.cls_token"
 
 
-class PointTower(torch.nn.Module):
+class PointTower(Weights):
     """Middles [1, p, 3] and patches [1, p, k, 9] of one shape to its vector [1, 1280]."""
 
     def __init__(self, weights: Mapping[str, torch.Tensor]) -> None:
-        super().__init__()
-        for name, value in weights.items():
-            self.register_buffer(name.replace(".", "__"), value.float())
+        super().__init__(weights)
         self.convolutions = sum(n.startswith("ppat.sa.mlp_convs.") and n.endswith(".weight") for n in weights)
         self.layers = 1 + max(int(n.split(".")[3]) for n in weights if n.startswith("ppat.transformer.layers."))
-
-    def _w(self, name: str) -> torch.Tensor:
-        return self.get_buffer(name.replace(".", "__"))
-
-    def _linear(self, x: torch.Tensor, name: str) -> torch.Tensor:
-        """Linear layers, and convolutions of size 1, which are the same."""
-        weight = self._w(f"{name}.weight")
-        return functional.linear(x, weight.reshape(weight.shape[:2]), self._w(f"{name}.bias"))
-
-    def _norm(self, x: torch.Tensor, name: str) -> torch.Tensor:
-        weight = self._w(f"{name}.weight")
-        return functional.layer_norm(x, (weight.numel(),), weight, self._w(f"{name}.bias"))
 
     def _read(self, patches: torch.Tensor) -> torch.Tensor:
         """Each patch [1, p, k, 9] as one vector: the largest value of each channel among its points."""

@@ -57,7 +57,7 @@ from diorama_core.scene.edits import rename
 from diorama_core.scene.types import Pose
 from diorama_core.workers import FinishedItem
 from scripts.crash_projects import Figures, Going, builds, edits, jobs, photos
-from scripts.killing import Say, Work, duration, killed
+from scripts.killing import Say, Work, duration, killed, unreadable
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project
 from tests.io.test_bombs import png
 from tests.processes import runs
@@ -189,13 +189,7 @@ def _read_library(folder: Path) -> tuple[dict[str, Any], int]:
         shapes = {s.id: s for s in library.shapes()}
     except DioramaError:
         return {}, 1
-    wrong = 0
-    for shape_id in shapes:
-        try:
-            library.shape(shape_id)
-            library.mesh(shape_id)
-        except DioramaError:
-            wrong += 1
+    wrong = sum(unreadable(lambda s=s: (library.shape(s), library.mesh(s))) for s in shapes)
     library.close()
     return shapes, wrong
 

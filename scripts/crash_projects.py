@@ -27,7 +27,7 @@ from diorama_core.project.further_photos import load_photos, note_placed, save_p
 from diorama_core.project.lock import ProjectLock
 from diorama_core.project.storage import Project, read_scene
 from diorama_core.scene.edits import rename
-from scripts.killing import Say, Work, duration, killed
+from scripts.killing import Say, Work, duration, killed, unreadable
 from tests.app.small_room import PlainLibrary, make_project, plain_photo
 from tests.io.test_bombs import png
 
@@ -96,7 +96,7 @@ def builds(going: Going, chance: np.random.Generator) -> Figures:
             folder = root / f"room-{number}"
             ended = killed(build(folder), float(chance.uniform(0.0, 1.05 * whole_s)))
             killed_within += not ended.finished
-            wrong += _unreadable_stages(folder)
+            wrong += sum(unreadable(lambda p=p: codec.load(p.read_bytes())) for p in folder.glob("stages/*.zip"))
             parts += remove_leftovers(folder, 0.0)
             if (folder / "scene.json").exists():
                 wrong += (folder / "scene.json").read_bytes() != expected
@@ -104,16 +104,6 @@ def builds(going: Going, chance: np.random.Generator) -> Figures:
                 finished, number = finished + 1, number + 1
     said = f"{finished} builds finished ({whole_s:.1f} s each), {wrong} wrong, {parts} parts of files removed"
     return killed_within, said, wrong
-
-
-def _unreadable_stages(folder: Path) -> int:
-    count = 0
-    for path in folder.glob("stages/*.zip"):
-        try:
-            codec.load(path.read_bytes())
-        except DioramaError:
-            count += 1
-    return count
 
 
 def _small_inputs() -> Inputs:
@@ -150,13 +140,8 @@ def photos(going: Going, chance: np.random.Generator) -> Figures:
 
 
 def _unreadable_notes(project: Project) -> int:
-    count = 0
-    for path in (project.scene_path, *project.stages_folder.glob("*.json")):
-        try:
-            read_json(path, DioramaError, most=path.stat().st_size)
-        except DioramaError:
-            count += 1
-    return count
+    paths = (project.scene_path, *project.stages_folder.glob("*.json"))
+    return sum(unreadable(lambda p=p: read_json(p, DioramaError, most=p.stat().st_size)) for p in paths)
 
 
 def jobs(going: Going, chance: np.random.Generator) -> Figures:
@@ -203,9 +188,5 @@ def _wrong_jobs(root: Path, known: dict[str, str]) -> int:
     for job_id in [j for j, state in known.items() if state not in ("leaves", "is_gone")]:
         state = found.get(job_id)
         count += state is None or (known[job_id] != "waits" and state != known[job_id])
-        if state == "done":
-            try:
-                read_scene(root / job_id / "scene.json")
-            except DioramaError:
-                count += 1
+        count += state == "done" and unreadable(lambda job_id=job_id: read_scene(root / job_id / "scene.json"))
     return count

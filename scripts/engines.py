@@ -44,28 +44,10 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.picture import instances_seen, picture, scene_view
 from diorama_core.render.raycast import PinholeView
 
-FILES = {
-    "mujoco": "mjcf",
-    "pybullet": "urdf",
-    "sapien": "urdf",
-    "drake": "sdf",
-    "newton": "usdc",
-}
+FILES = {"MuJoCo": "mjcf", "PyBullet": "urdf", "SAPIEN": "urdf", "Drake": "sdf", "newton": "usdc"}
 """Which format each engine is given."""
-NAMES = {
-    "mujoco": "MuJoCo",
-    "pybullet": "PyBullet",
-    "sapien": "SAPIEN",
-    "drake": "Drake",
-    "newton": "newton",
-}
-DRAWN = {
-    "MuJoCo": "mujoco",
-    "PyBullet": "pybullet",
-    "Blender": "blender",
-    **{name: name for name in ("three.js", "Babylon.js")},
-}
-"""Rows with a picture, and what draws it."""
+DRAWN = ("MuJoCo", "PyBullet", "Blender", "three.js", "Babylon.js")
+"""Rows with a picture."""
 WIDTH_PX = 320
 WHITE_L, BLACK_L, MAX_SHARE = 97.0, 3.0, 0.4
 """A picture is pale or black when more than this share of it is lighter or darker."""
@@ -164,11 +146,15 @@ def checked(engine: str, python: Path, folder: Path) -> dict[str, Any] | None:
     return found
 
 
+def file_of(kind: str) -> str:
+    return f"{'game' if kind == 'game' else 'room'}{EXPORT_FORMATS[kind].suffixes[0]}"
+
+
 def exported(source: Source, kinds: Iterable[str], library: ShapeLibrary, folder: Path) -> dict[str, ExportScene]:
     """The room in every format that is needed."""
     found = {}
     for kind in kinds:
-        path = folder / f"{'game' if kind == 'game' else 'room'}{EXPORT_FORMATS[kind].suffixes[0]}"
+        path = folder / file_of(kind)
         found[kind] = export_scene(source.scene, library, path, EXPORT_FORMATS[kind], textures=source.textures)
     return found
 
@@ -178,8 +164,8 @@ def simulate(rows: dict[str, Row], environments: Path, physical: PhysicalScene, 
     bodies = sum(len(b.parts) + sum(len(m.parts) for m in b.moving) for b in physical.bodies)
     colliders = bodies + sum(len(slab.pieces) for slab in physical.slabs)
     free = [b.node.slug for b in physical.bodies if b.free]
-    for engine in [engine for engine in FILES if NAMES[engine] in rows and rows[NAMES[engine]].version]:
-        row = rows[NAMES[engine]]
+    for title in [title for title in FILES if title in rows and rows[title].version]:
+        engine, row = title.lower(), rows[title]
         limits = [limits_in(row.kind, m.limb) for b in physical.bodies for m in b.moving]
         row.free += len(free)
         row.all_joints += len(limits)
@@ -200,10 +186,8 @@ def simulate(rows: dict[str, Row], environments: Path, physical: PhysicalScene, 
 def open_in_programs(rows: dict[str, Row], gathered: dict[str, ExportScene], folder: Path, name: str) -> None:
     """Count the programs that open a room without a finding."""
     for program in [p for p in PROGRAMS if p.name in rows and rows[p.name].version]:
-        kind = program.kind
-        path = folder / f"{'game' if kind == 'game' else 'room'}{EXPORT_FORMATS[kind].suffixes[0]}"
         try:
-            found = program.findings(path, gathered[kind])
+            found = program.findings(folder / file_of(program.kind), gathered[program.kind])
         except Exception as error:  # every failure is a finding of its own
             found = [f"{type(error).__name__}: {error}"]
         rows[program.name].loads += not found
@@ -228,8 +212,9 @@ def draw(
     ours = picture(source.scene, library, size=size, textures=source.textures)
     inside = instances_seen(source.scene, library, size=size) >= 0
     shown = {"diorama": ours}
-    for name, engine in DRAWN.items():
+    for name in DRAWN:
         if name in rows and rows[name].version not in ("", "–"):
+            engine = name if name.endswith(".js") else name.lower()
             drawn = picture_by(engine, python_of(environments, engine), folder, size)
             if drawn is not None:
                 rows[name].compare(drawn, ours, inside)
@@ -281,7 +266,7 @@ def main() -> None:
     parser.add_argument("--edited", action="store_true", help="the first project after edits, too")
     parser.add_argument("--text", action="store_true", help="a room from words")
     parser.add_argument("--scan", action="store_true", help="a room as RoomPlan measures it")
-    every = [*FILES, *(p.name for p in PROGRAMS)]
+    every = [*map(str.lower, FILES), *(p.name for p in PROGRAMS)]
     parser.add_argument("--engines", nargs="*", default=every, choices=every, metavar="NAME", help=", ".join(every))
     parser.add_argument(
         "--environments", type=Path, default=Path(".venv/engines"), metavar="FOLDER", help="where engines are installed"
@@ -295,9 +280,9 @@ def main() -> None:
     os.environ.setdefault(PYTHON_VARIABLE, str(python_of(a.environments, "Blender")))
     library, done = built_in_library(), list[str]()
     rows = {
-        NAMES[engine]: Row(FILES[engine], "–" if python_of(a.environments, engine).is_file() else "")
-        for engine in FILES
-        if engine in a.engines
+        name: Row(kind, "–" if python_of(a.environments, name).is_file() else "")
+        for name, kind in FILES.items()
+        if name.lower() in a.engines
     }
     rows |= {p.name: Row(p.kind, p.release(), simulates=False) for p in PROGRAMS if p.name in a.engines}
     for source in sources(a, library):

@@ -38,7 +38,7 @@ from diorama_core.evaluation.benchmarks.cases import SEEDS, make_views, recipe
 from diorama_core.evaluation.benchmarks.photo_build import read_annotated_inputs
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.evaluation.benchmarks.system import WAYS
-from diorama_core.evaluation.metrics.scene import align_to_truth, match_all
+from diorama_core.evaluation.metrics.scene import Matched
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.plan import assemble, evaluate
@@ -146,16 +146,9 @@ def _faces(scene: Scene, normal: Float[np.ndarray, "3"], front_deg: float | None
     return bool(normal[:2] @ front > np.cos(np.deg2rad(45.0)))
 
 
-def _true(view: TruthView, scene: Scene) -> tuple[Scene, dict[str, str]]:
-    """The scene in the true world, and the built object of each true one."""
-    there = align_to_truth(scene, view)
-    truth = [view.scene.objects[k] for k in view.indices]
-    return there, {t.id: m.id for t, m in zip(truth, match_all(truth, there), strict=True) if m is not None}
-
-
 def _rendered(view: TruthView, scene: Scene) -> dict[str, frozenset[str]]:
-    there, names = _true(view, scene)
-    found = {}
+    matched = Matched.of(view, scene)
+    there, names, found = matched.scene, {true: item.id for true, item in matched.counterparts.items()}, {}
     for edge in true_supports(view):
         if edge.child not in names:
             continue
@@ -171,11 +164,12 @@ def _rendered(view: TruthView, scene: Scene) -> dict[str, frozenset[str]]:
 
 def _standings(group: str, view: TruthView, scene: Scene, noise: ObservationNoise) -> Iterator[Standing]:
     """How every object on the floor stands to every wall that was found."""
-    there, names = _true(view, scene)
+    matched = Matched.of(view, scene)
+    there, built = matched.scene, matched.counterparts
     floors = {p.id for p in view.scene.architecture.by_role("floor")}
     for true in (view.scene.objects[k] for k in view.indices):
         edge = view.scene.support_of(true.id)
-        if true.id not in names or edge is None or edge.parent not in floors:
+        if true.id not in built or edge is None or edge.parent not in floors:
             continue
         touched = [
             w.normal
@@ -184,7 +178,7 @@ def _standings(group: str, view: TruthView, scene: Scene, noise: ObservationNois
             and float(np.abs(w.normal @ true.pose.R_world_object).max()) > SAME_WALL
         ]
         for wall, in_truth in zip(scene.architecture.by_role("wall"), there.architecture.by_role("wall"), strict=True):
-            relation = wall_relation(scene, scene.object(names[true.id]), wall, noise)
+            relation = wall_relation(scene, scene.object(built[true.id].id), wall, noise)
             if relation is not None:
                 values = np.array([term(relation) for term in STANDING_TERMS.values()])
                 right = any(float(n @ in_truth.normal) > SAME_WALL for n in touched)
@@ -228,8 +222,8 @@ def fitted(questions: Sequence[Question], used: Bool[np.ndarray, " t"]) -> Float
     return weights
 
 
-def held_out(questions: Sequence[Question], used: Bool[np.ndarray, " t"]) -> tuple[float, dict[str, float]]:
-    """Negative log-likelihood and share of right supporters by source, each group fitted on the others."""
+def held_out(questions: Sequence[Question], used: Bool[np.ndarray, " t"]) -> dict[str, float]:
+    """Negative log-likelihood ("loss") and share of right supporters by source, each group fitted on the others."""
     loss, right, count = 0.0, Counter[str](), Counter[str]()
     for training, tested in _folds(questions, lambda q: q.group):
         w = fitted(training, used)
@@ -239,7 +233,7 @@ def held_out(questions: Sequence[Question], used: Bool[np.ndarray, " t"]) -> tup
             loss -= float(np.log(likely[q.right].sum() / likely.sum()))
             right[q.source] += int(q.right[int(np.argmin(cost))])
             count[q.source] += 1
-    return round(loss, 2), {source: round(right[source] / count[source], 3) for source in sorted(count)}
+    return {"loss": round(loss, 2), **{source: round(right[source] / count[source], 3) for source in sorted(count)}}
 
 
 def _folds(cases: Sequence[T], group: Callable[[T], str]) -> Iterator[tuple[list[T], list[T]]]:
@@ -287,18 +281,14 @@ def main() -> None:
         questions += photo_questions(annotated, photos, library, args.stages, columns)
     everything = np.ones(len(columns), dtype=bool)
     weights = fitted(questions, everything).round(3).tolist()
-    without = {}
-    for k, name in enumerate(columns[: len(TERMS)]):
-        loss, right = held_out(questions, np.arange(len(columns)) != k)
-        without[name] = {"loss": loss, **right}
-    loss, right = held_out(questions, np.arange(len(columns)) < len(TERMS))
-    without["usual places"] = {"loss": loss, **right}
-    loss, right = held_out(questions, everything)
+    numbers = np.arange(len(columns))
+    without = {name: held_out(questions, numbers != k) for k, name in enumerate(columns[: len(TERMS)])}
+    without["usual places"] = held_out(questions, numbers < len(TERMS))
     walls = {"measured": [s for s in standings if s.measured], "reasoned": [s for s in standings if not s.measured]}
     certificate = {
         "command": "scripts/fit_supports.py ANNOTATIONS PHOTOS ... --stages DIR",
         "objects": dict(Counter(q.source for q in questions)),
-        "held out": {"loss": loss, **right},
+        "held out": held_out(questions, everything),
         "without": without,
         "standing against walls, held out": {name: standing_score(cases) for name, cases in walls.items()},
     }

@@ -12,6 +12,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from diorama_core.errors import DioramaError
+
 Say = Callable[[str], None]
 Work = Callable[[Say], None]
 
@@ -53,7 +55,7 @@ def killed(work: Work, after_s: float, *, from_first: bool = False) -> Ended:
         children = () if ended else _children(process)
         with contextlib.suppress(ProcessLookupError):
             os.kill(process, signal.SIGKILL)
-        while part := os.read(pipe.fileno(), 65536) if not _shared(children) else b"":
+        while not children and (part := os.read(pipe.fileno(), 65536)):  # children may hold the pipe open
             said += part
     os.waitpid(process, 0)
     lines = said.decode().split("\n")[:-1]  # what follows the last line's end is half a line
@@ -85,14 +87,18 @@ def _read_until(pipe: int, said: bytearray, until: float) -> bool:
     return False
 
 
-def _shared(children: tuple[int, ...]) -> bool:
-    """Whether others may hold the pipe open, so that its end says nothing."""
-    return bool(children)
-
-
 def _children(process: int) -> tuple[int, ...]:
     path = Path(f"/proc/{process}/task/{process}/children")
     return tuple(map(int, path.read_text().split())) if path.exists() else ()
+
+
+def unreadable(read: Callable[[], object]) -> bool:
+    """Whether what was left behind cannot be read."""
+    try:
+        read()
+    except DioramaError:
+        return True
+    return False
 
 
 def duration(work: Work) -> float:

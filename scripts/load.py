@@ -20,6 +20,7 @@ import sys
 import tempfile
 import threading
 import time
+from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
 
@@ -36,40 +37,55 @@ FLOOD_S = 9.0
 DISTURBANCES = ("flood", "slow", "half")
 
 
-class Person:
+class Page:
+    """A page of the editor, whose panels' pieces can be found and pressed."""
+
+    def __init__(self, port: int, query: str = "") -> None:
+        self.page = WirePage(port, query=query)
+        self._numbers = defaultdict[str, int](int)
+
+    def piece(self, mark: str, seconds: float = 120.0) -> tuple[str, str]:
+        """The piece of a panel that has this in it, once there is one, and the field that takes its actions."""
+
+        def find() -> tuple[str, str] | None:
+            for uuid in list(self.page.elements):
+                content = self.content(uuid)
+                if mark in content:
+                    found = re.search(r"__dioSend\((?:'|&#x27;)([0-9a-f-]+)", content)
+                    return (uuid, found[1]) if found else None
+            return None
+
+        found: tuple[str, str] = self.page.wait_for(find, seconds)
+        return found
+
+    def content(self, uuid: str) -> str:
+        return str(self.page.elements.get(uuid, {}).get("content", ""))
+
+    def press(self, field: str, do: str, arg: str) -> None:
+        self._numbers[field] += 1
+        self.page.set(field, json.dumps([{"do": do, "arg": arg, "add": False, "number": self._numbers[field]}]))
+
+
+class Person(Page):
     """A page whose outliner is pressed."""
 
     def __init__(self, port: int) -> None:
-        self.page = WirePage(port)
+        super().__init__(port)
         self.latencies: list[float] = []
         self.lost = 0
-        self.actions = 0
-        self.outliner, self.field = self.page.wait_for(self._find, 120.0)
-
-    def _find(self) -> tuple[str, str] | None:
-        for uuid, element in self.page.elements.items():
-            content = str(element.get("content", ""))
-            if 'data-do="hide"' in content:
-                found = re.search(r"__dioSend\((?:'|&#x27;)([0-9a-f-]+)", content)
-                return (uuid, found[1]) if found else None
-        return None
-
-    def act(self, do: str, arg: str) -> None:
-        self.actions += 1
-        value = json.dumps([{"do": do, "arg": arg, "add": False, "number": self.actions}])
-        self.page.set(self.field, value)
+        self.outliner, self.field = self.piece('data-do="hide"')
 
     def hidden(self, object_id: str) -> bool:
         """Whether this page says that an object is hidden."""
-        content = str(self.page.elements[self.outliner].get("content", ""))
-        found = re.search(rf'data-do="hide" data-arg="{object_id}"[^>]* title="(Hide|Show) ', content)
+        row = rf'data-do="hide" data-arg="{object_id}"[^>]* title="(Hide|Show) '
+        found = re.search(row, self.content(self.outliner))
         assert found is not None, f"the outliner has no row for {object_id}"
         return found[1] == "Show"
 
     def edit(self, object_id: str) -> None:
         """Hide or show an object and wait until the outliner says so."""
         before, began = self.hidden(object_id), time.monotonic()
-        self.act("hide", object_id)
+        self.press(self.field, "hide", object_id)
         try:
             self.page.wait_for(lambda: self.hidden(object_id) != before, 20.0)
         except AssertionError:
@@ -92,12 +108,16 @@ serve(project=folder, projects_dir=folder.parent, host="127.0.0.1", port=0, open
 
 def serving(folder: Path, library: str = "PlainLibrary()") -> tuple[subprocess.Popen, int]:
     """A server of a project, and its port; `library` is Python."""
-    root = str(Path(__file__).resolve().parents[1])
-    command = [sys.executable, "-c", SERVE, str(folder), library]
+    process, line = started("-c", SERVE, str(folder), library)
+    return process, int(re.search(r":(\d+)/", line)[1])
+
+
+def started(*words: str) -> tuple[subprocess.Popen, str]:
+    """A process of Python, and the first line that it prints."""
+    command, root = [sys.executable, *words], str(Path(__file__).resolve().parents[1])
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=root)
     assert process.stdout is not None
-    port = int(re.search(r":(\d+)/", process.stdout.readline())[1])
-    return process, port
+    return process, process.stdout.readline()
 
 
 def flood(port: int) -> None:
@@ -105,7 +125,7 @@ def flood(port: int) -> None:
     until, count = time.monotonic() + FLOOD_S, 0
     ids = [o.id for o in furnished_scene().objects]
     while time.monotonic() < until:
-        person.act("lock", ids[count % len(ids)])
+        person.press(person.field, "lock", ids[count % len(ids)])
         count += 1
     print(f"flood: {count} actions in {FLOOD_S:.0f} s", flush=True)
     person.page.close()
@@ -183,12 +203,8 @@ def run(options: argparse.Namespace, servers: list[tuple[subprocess.Popen, int]]
     before = [used(process) for process, _ in servers]
     threads = [threading.Thread(target=work, args=(i,)) for i in range(options.clients)]
     port = servers[0][1]
-    if "half" in options.disturb:
-        threads.append(threading.Thread(target=half_requests, args=(port, until)))
-    if "slow" in options.disturb:
-        threads.append(threading.Thread(target=slow_reader, args=(port, until)))
-    if "flood" in options.disturb:
-        threads.append(threading.Thread(target=flood, args=(port,)))
+    disturbing = {"half": (half_requests, port, until), "slow": (slow_reader, port, until), "flood": (flood, port)}
+    threads += [threading.Thread(target=f, args=a) for name, (f, *a) in disturbing.items() if name in options.disturb]
     for thread in threads:
         thread.start()
     for thread in threads:

@@ -1,9 +1,11 @@
-"""Make the pictures of the README: the editor with the example in it, and the example's picture beside its scene.
+"""Make the pictures of the README, and those of the example rooms that the start page shows.
 
-Writes `editor.jpg` (a screenshot in Chromium, which the browser tests need, too) and `photo-to-scene.jpg` (the picture,
-the scene through its camera, the scene from outside). Run it after `scripts/make_example.py`.
+Writes `editor.jpg` (the editor with the example in it: a screenshot in Chromium, which the browser tests need, too) and
+`photo-to-scene.jpg` (the example's picture, the scene through its camera, the scene from outside) into `--out`, and
+`assets/start/*.jpg`: the example, and each room of `diorama_core.synthesis.example_rooms`. Run it after
+`scripts/make_example.py`.
 
-    python scripts/make_doc_pictures.py [--out docs/images] [--only editor,scene]
+    python scripts/make_doc_pictures.py [--out docs/images] [--only editor,scene,start]
 """
 
 from __future__ import annotations
@@ -22,9 +24,11 @@ from PIL import Image
 
 from diorama_app.projects.example import EXAMPLE
 from diorama_app.serve import start
+from diorama_core.appearance.surface_finish import with_finish_pictures
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.project.storage import Project
 from diorama_core.render.picture import picture
+from diorama_core.synthesis.example_rooms import EXAMPLE_ROOMS, example_room
 from tests.e2e.browser import FLAGS, EditorPage, chromium
 
 PAGE = (1280, 720)
@@ -32,6 +36,15 @@ TILE = (640, 480)
 GAP = 6
 QUALITY = 88
 SELECTED = "armchair"
+START = Path("assets/start")
+START_SIZE, START_SHOWN, START_QUALITY = (960, 672), (320, 224), 82
+START_VIEWS = {
+    "living": "look:1.06,-0.2,2.9:0.06,4.45,0.6",
+    "bedroom": "orbit:30",
+    "study": "orbit:30",
+    "kitchen": "orbit:215",
+}
+"""From where each room is seen best; the example close to its furniture, which stands on half of its floor."""
 
 
 def editor(out: Path) -> None:
@@ -73,7 +86,21 @@ def scene(out: Path) -> None:
     Image.fromarray(strip).save(out / "photo-to-scene.jpg", quality=QUALITY, optimize=True)
 
 
-PICTURES = {"editor": editor, "scene": scene}
+def start_page(_: Path) -> None:
+    """The rooms that the start page shows."""
+    START.mkdir(parents=True, exist_ok=True)
+    library = built_in_library()
+    example = Project.open(EXAMPLE / "project")
+    made = example.load_scene()
+    rooms = {"living": (made, example.textures(made))}
+    rooms |= {room.kind: with_finish_pictures(example_room(room, library), {}) for room in EXAMPLE_ROOMS}
+    for kind, (room, textures) in rooms.items():
+        drawn = Image.fromarray(picture(room, library, view=START_VIEWS[kind], size=START_SIZE, textures=textures))
+        small = drawn.resize(START_SHOWN, Image.Resampling.LANCZOS)
+        small.save(START / f"{kind}.jpg", quality=START_QUALITY)
+
+
+PICTURES = {"editor": editor, "scene": scene, "start": start_page}
 
 
 def main() -> None:

@@ -35,6 +35,7 @@ from typing import TYPE_CHECKING
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scripts.needs  # noqa: F401  # ends with a line where a package is missing
+from scripts.untested_modules import mirror_test
 
 os.environ["DIORAMA_CHECK_SHAPES"] = "0"  # before tests are imported
 
@@ -52,63 +53,44 @@ WAITING, WAITING_S = 20.0, 90.0
 """The same of the clock, for one that waits for ever; other work on the machine must not make a mutant found."""
 
 GUARDED: dict[str, tuple[str, ...]] = {
-    "diorama_core/io/atomic.py": ("tests/io/test_atomic.py",),
-    "diorama_core/io/bounded.py": ("tests/io/test_bounded.py", "tests/project/test_hostile.py"),
-    "diorama_core/io/contained.py": ("tests/io/test_contained.py",),
-    "diorama_core/io/text.py": ("tests/io/test_text.py",),
-    "diorama_core/io/arrays.py": ("tests/io/test_arrays.py",),
-    "diorama_core/io/derived.py": ("tests/io/test_derived.py",),
-    "diorama_core/io/limited.py": ("tests/io/test_limited.py",),
-    "diorama_core/project/backups.py": ("tests/project/test_backups.py", "tests/project/test_storage.py"),
-    "diorama_core/project/lock.py": ("tests/project/test_lock.py", "tests/project/test_stateful_lock.py"),
-    "diorama_core/project/storage.py": (
-        "tests/project/test_storage.py",
-        "tests/project/test_hostile.py",
-        "tests/project/test_written_is_readable.py",
-    ),
-    "diorama_core/project/further_photos.py": ("tests/project/test_further_photos.py",),
-    "diorama_core/pipeline/runner.py": ("tests/pipeline/test_runner.py",),
-    "diorama_core/scene/history.py": ("tests/scene/test_history.py",),
-    "diorama_app/session/recovery.py": (
-        "tests/app/session/test_recovery.py",
-        "tests/app/session/test_stateful_project.py",
-    ),
-    "diorama_app/session/autosave.py": (
-        "tests/app/session/test_recovery.py",
-        "tests/app/session/test_autosave.py",
-        "tests/app/session/test_stateful_project.py",
-    ),
-    "diorama_app/session/ui_thread.py": ("tests/app/session/test_ui_thread.py",),
-    "diorama_app/projects/manage.py": ("tests/app/projects/test_manage.py", "tests/app/test_care.py"),
-    "diorama_app/http_api/access.py": ("tests/app/http_api/test_access.py", "tests/app/http_api/test_connections.py"),
-    "diorama_app/http_api/answers.py": ("tests/app/http_api/test_routes.py", "tests/app/http_api/test_jobs.py"),
-    "diorama_app/http_api/job.py": ("tests/app/http_api/test_jobs.py",),
-    "diorama_app/http_api/jobs.py": ("tests/app/http_api/test_jobs.py", "tests/app/http_api/test_stateful_jobs.py"),
-    "diorama_app/web/requests.py": ("tests/app/web/test_requests.py",),
-    "diorama_app/web/visitors.py": ("tests/app/web/test_visitors.py",),
+    "diorama_core/io/atomic.py": (),
+    "diorama_core/io/bounded.py": ("project/test_hostile.py",),
+    "diorama_core/io/contained.py": (),
+    "diorama_core/io/text.py": (),
+    "diorama_core/io/arrays.py": (),
+    "diorama_core/io/derived.py": (),
+    "diorama_core/io/limited.py": (),
+    "diorama_core/project/backups.py": ("project/test_storage.py",),
+    "diorama_core/project/lock.py": ("project/test_stateful_lock.py",),
+    "diorama_core/project/storage.py": ("project/test_hostile.py", "project/test_written_is_readable.py"),
+    "diorama_core/project/further_photos.py": (),
+    "diorama_core/pipeline/runner.py": (),
+    "diorama_core/scene/history.py": (),
+    "diorama_app/session/recovery.py": ("app/session/test_stateful_project.py",),
+    "diorama_app/session/autosave.py": ("app/session/test_recovery.py", "app/session/test_stateful_project.py"),
+    "diorama_app/session/ui_thread.py": (),
+    "diorama_app/projects/manage.py": ("app/test_care.py",),
+    "diorama_app/http_api/access.py": ("app/http_api/test_connections.py",),
+    "diorama_app/http_api/answers.py": ("app/http_api/test_routes.py", "app/http_api/test_jobs.py"),
+    "diorama_app/http_api/job.py": ("app/http_api/test_jobs.py",),
+    "diorama_app/http_api/jobs.py": ("app/http_api/test_stateful_jobs.py",),
+    "diorama_app/web/requests.py": (),
+    "diorama_app/web/visitors.py": (),
 }
+"""Modules, and the tests of each besides the one that mirrors its path."""
 
 ELSEWHERE = {"diorama_core/io/limited.py": ("_serve", "_tell", "_answer")}
 """Functions that another process runs, which reads the module's file itself: a defect here is none there."""
 
-COMPARED: dict[type[ast.cmpop], type[ast.cmpop]] = {
-    ast.Lt: ast.LtE,
-    ast.LtE: ast.Lt,
-    ast.Gt: ast.GtE,
-    ast.GtE: ast.Gt,
-    ast.Eq: ast.NotEq,
-    ast.NotEq: ast.Eq,
-    ast.In: ast.NotIn,
-    ast.NotIn: ast.In,
-    ast.Is: ast.IsNot,
-    ast.IsNot: ast.Is,
-}
-AT_A_CLOCK: dict[type[ast.cmpop], type[ast.cmpop]] = {
-    ast.Lt: ast.GtE,
-    ast.LtE: ast.Gt,
-    ast.Gt: ast.LtE,
-    ast.GtE: ast.Lt,
-}
+
+def _both_ways(*pairs: tuple[type[ast.cmpop], type[ast.cmpop]]) -> dict[type[ast.cmpop], type[ast.cmpop]]:
+    return {a: b for pair in pairs for a, b in (pair, pair[::-1])}
+
+
+COMPARED = _both_ways(
+    (ast.Lt, ast.LtE), (ast.Gt, ast.GtE), (ast.Eq, ast.NotEq), (ast.In, ast.NotIn), (ast.Is, ast.IsNot)
+)
+AT_A_CLOCK = _both_ways((ast.Lt, ast.GtE), (ast.LtE, ast.Gt))
 """No clock reads exactly the limit: there the neighbour makes no difference, the contrary does."""
 COMPUTED: dict[type[ast.operator], type[ast.operator]] = {
     ast.Add: ast.Sub,
@@ -373,7 +355,9 @@ def chosen(options: argparse.Namespace) -> Iterator[tuple[Path, tuple[str, ...],
             continue
         every = mutants_of((ROOT / module).read_text(), ELSEWHERE.get(module, ()))
         sample = random.Random(options.seed).sample(every, min(options.sample or len(every), len(every)))
-        yield ROOT / module, tests, sorted(sample, key=lambda m: m.number), len(every)
+        own = mirror_test(ROOT, module.removesuffix(".py").replace("/", "."))
+        paths = [path for path in (own, *(ROOT / "tests" / name for name in tests)) if path.exists()]
+        yield ROOT / module, tuple(map(str, paths)), sorted(sample, key=lambda m: m.number), len(every)
 
 
 def main() -> int:

@@ -36,7 +36,7 @@ from PIL import Image
 import scripts.needs  # noqa: F401  # ends with a line where a package is missing
 from diorama_core.project.lock import OWNER
 from diorama_core.project.storage import Project
-from scripts.load import room_of, serving
+from scripts.load import Page, room_of, serving, started
 from tests.app.http_api.openapi_client import Client
 from tests.app.small_room import make_project, plain_photo
 from tests.app.wire import WirePage
@@ -117,46 +117,28 @@ def _scan(seed: int) -> bytes:
     return bytes(trimesh.PointCloud(np.vstack(points)).export(file_type="ply"))
 
 
-class Person:
+class Person(Page):
     """One page, and an object of its own in the project that it shows."""
 
     def __init__(self, port: int, folder: Path, own: str, figures: Figures, seed: int) -> None:
+        super().__init__(port, f"?project={folder.name}")
         self.port, self.folder, self.own, self.figures = port, folder, own, figures
         self.name = f"{folder.name}-{own}"
         self.chance = np.random.default_rng(seed)
-        self.page = WirePage(port, query=f"?project={folder.name}")
-        self.numbers = defaultdict[str, int](int)
         self.hidden = False
         """As this person set it last."""
 
-    def _piece(self, mark: str) -> tuple[str, str]:
-        """The piece of a panel that has this in it, and the field that takes its actions."""
-
-        def find() -> tuple[str, str] | None:
-            for uuid, element in list(self.page.elements.items()):
-                content = str(element.get("content", ""))
-                if mark in content:
-                    found = re.search(r"__dioSend\((?:'|&#x27;)([0-9a-f-]+)", content)
-                    return (uuid, found[1]) if found else None
-            return None
-
-        found: tuple[str, str] = self.page.wait_for(find, PATIENCE_S)
-        return found
-
     def _act(self, mark: str, do: str, arg: object) -> str:
-        uuid, field = self._piece(mark)
-        self.numbers[field] += 1
-        said = arg if isinstance(arg, str) else json.dumps(arg)
-        value = [{"do": do, "arg": said, "add": False, "number": self.numbers[field]}]
-        self.page.set(field, json.dumps(value))
+        uuid, field = self.piece(mark, PATIENCE_S)
+        self.press(field, do, arg if isinstance(arg, str) else json.dumps(arg))
         return uuid
 
     def _shown(self, uuid: str, pattern: str) -> bool:
-        return re.search(pattern, str(self.page.elements[uuid].get("content", ""))) is not None
+        return re.search(pattern, self.content(uuid)) is not None
 
     def _holds(self, *words: str) -> bool:
         """Whether a piece of a panel has all of these in it."""
-        return any(all(w in str(e.get("content", "")) for w in words) for e in list(self.page.elements.values()))
+        return any(all(w in self.content(uuid) for w in words) for uuid in list(self.page.elements))
 
     def edit(self) -> None:
         """Hide or show the own object, until the own outliner says so."""
@@ -170,7 +152,7 @@ class Person:
             'data-change="ask"', "ask", ["", str(self.chance.choice(["make all chairs red", "move the lamp left"]))]
         )
         self._until(lambda: self._holds('aria-label="Proposed edits"'))
-        uuid, _ = self._piece('aria-label="Proposed edits"')
+        uuid, _ = self.piece('aria-label="Proposed edits"', PATIENCE_S)
         self._act('aria-label="Proposed edits"', "cancel", "")
         self.page.wait_for(lambda: not self._shown(uuid, "Proposed edits"), PATIENCE_S)
 
@@ -261,11 +243,8 @@ def program(url: str, figures: Figures, until: float, seed: int) -> None:
 
 
 def api(folder: Path) -> tuple[subprocess.Popen[str], str]:
-    command = [sys.executable, "-m", "diorama_app.cli", "api", "--port", "0", "--projects", str(folder)]
-    root = str(Path(__file__).resolve().parents[1])
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=root)
-    assert process.stdout is not None
-    return process, process.stdout.readline().split(" at ")[1].split()[0]
+    process, line = started("-m", "diorama_app.cli", "api", "--port", "0", "--projects", str(folder))
+    return process, line.split(" at ")[1].split()[0]
 
 
 def state(process: subprocess.Popen[str]) -> tuple[float, int]:

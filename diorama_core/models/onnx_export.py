@@ -12,6 +12,7 @@ import numpy as np
 import onnx
 import torch
 from torch import nn
+from torch.nn import functional
 
 OPSET = 17
 _LARGE = 64
@@ -44,6 +45,27 @@ def checkpoint_arguments(about: str | None, given: list[str] | None) -> argparse
     parser.add_argument("-o", "--output", type=Path, required=True)
     parser.add_argument("--trust", action="store_true", help="read a checkpoint that may run code")
     return parser.parse_args(given)
+
+
+class Weights(nn.Module):
+    """A network that is rebuilt from the weights of a checkpoint, and the layers that use them by name."""
+
+    def __init__(self, weights: Mapping[str, torch.Tensor]) -> None:
+        super().__init__()
+        for name, value in weights.items():
+            self.register_buffer(name.replace(".", "__"), value.float())
+
+    def _w(self, name: str) -> torch.Tensor:
+        return self.get_buffer(name.replace(".", "__"))
+
+    def _linear(self, x: torch.Tensor, name: str) -> torch.Tensor:
+        """Linear layers, and convolutions of size 1, which are the same."""
+        weight = self._w(f"{name}.weight")
+        return functional.linear(x, weight.reshape(weight.shape[:2]), self._w(f"{name}.bias"))
+
+    def _norm(self, x: torch.Tensor, name: str) -> torch.Tensor:
+        weight = self._w(f"{name}.weight")
+        return functional.layer_norm(x, (weight.numel(),), weight, self._w(f"{name}.bias"))
 
 
 def write_graph(

@@ -1,16 +1,20 @@
-"""What the adapters share: reading JSON and tables with errors that name the file, and turning Y-up worlds upright."""
+"""What the adapters share: reading files with errors that name them, boxes around instances, and upright worlds."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int32
 
+from diorama_core.artefacts import LabelledBox
 from diorama_core.errors import InputError
 from diorama_core.io import bounded
 from diorama_core.io.arrays import array_of
+from diorama_core.library.taxonomy import resolve
 
 MAX_METADATA_BYTES = 600_000_000
 R_ZUP_YUP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -52,3 +56,14 @@ def existing(folder: Path, *names: str) -> Path:
         if (folder / name).is_file():
             return folder / name
     raise InputError(f"{folder}: none of {', '.join(names)} is there; lay it out as the dataset is published")
+
+
+def boxes_of(instances: Int32[np.ndarray, "h w"], labels: Sequence[str]) -> tuple[tuple[int, LabelledBox], ...]:
+    """Boxes around what is seen of the objects 1, 2, ... of an instance map, with the kinds that their labels mean."""
+    boxes = []
+    for number, label in enumerate(labels, start=1):
+        x, y, width, height = cv2.boundingRect((instances == number).astype(np.uint8))
+        if width:
+            box = (float(x), float(y), float(x + width), float(y + height))
+            boxes.append((number, LabelledBox(box, resolve(label).category.name, label)))
+    return tuple(boxes)

@@ -31,8 +31,6 @@ SHAPENET_CATEGORIES: dict[str, str] = {
 class AlignedModel:
     """One ShapeNet model where Scan2CAD put it."""
 
-    model: str
-    """`category/model` of ShapeNetCore."""
     category: str
     R_world_object: Float[np.ndarray, "3 3"]
     """Object frame as ours: +X front, +Z up (ShapeNet's are -Z front, +Y up)."""
@@ -108,7 +106,6 @@ def _model(record: dict[str, Any], scan: Float[np.ndarray, "4 4"]) -> AlignedMod
     sizes = 2 * half * scale
     category = SHAPENET_CATEGORIES.get(str(record["catid_cad"]), "object")
     return AlignedModel(
-        model=f"{record['catid_cad']}/{record['id_cad']}",
         category=category,
         R_world_object=(M[:3, :3] / scale) @ _R_SHAPENET_OBJECT,
         centre=M[:3, 3],

@@ -1,8 +1,7 @@
 """Renderings of the Stanford Scene Database in the layout of the paper's authors.
 
 A scene is a folder: `scene.png` (or `.jpg`), `gt.json` and a segmentation (`seg.npy`, n x h x w masks in the order of
-`seg.json`, or one id map). `gt.json` maps object ids to `class`, `name`, `parent_id` (0 for the room) and, where the
-renderer wrote it, `model_id` and `transform` (4 x 4, object to camera or world as the file says).
+`seg.json`, or one id map). `gt.json` maps object ids to `class`, `name` and `parent_id` (0 for the room).
 """
 
 from __future__ import annotations
@@ -11,11 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float
 
-from diorama_core.artefacts import Inputs, LabelledBox
+from diorama_core.artefacts import Inputs
 from diorama_core.errors import InputError
-from diorama_core.evaluation.adapters.files import existing, read_array, read_json
+from diorama_core.evaluation.adapters.files import boxes_of, existing, read_array, read_json
 from diorama_core.library.taxonomy import resolve
 from diorama_core.perception.inputs import read_inputs
 
@@ -31,9 +29,6 @@ class SsdbObject:
     category: str
     parent: int | None
     """Id of the object it is placed on; None for the room."""
-    model: str | None
-    T_annotation_object: Float[np.ndarray, "4 4"] | None
-    """As the file gives it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,15 +50,8 @@ def read_ssdb(folder: Path) -> SsdbScene:
     instances = _segmentation(folder, [o.id for o in objects])
     if instances.shape != inputs.photo.rgb.shape[:2]:
         raise InputError(f"{folder}: the segmentation is {instances.shape}, the picture {inputs.photo.rgb.shape[:2]}")
-    named = []
-    for rank, item in enumerate(objects, start=1):
-        mask = instances == rank
-        if mask.any():
-            rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-            box = (float(columns[0]), float(rows[0]), float(columns[-1] + 1), float(rows[-1] + 1))
-            named.append((rank, LabelledBox(box, item.category, item.label)))
-    boxes = tuple(b for _, b in named)
-    given = Inputs(inputs.photo, boxes, instances, tuple(named))
+    named = boxes_of(instances, [o.label for o in objects])
+    given = Inputs(inputs.photo, tuple(b for _, b in named), instances, named)
     return SsdbScene(folder.name, given, objects)
 
 
@@ -74,15 +62,7 @@ def _is_room(record: dict[str, object]) -> bool:
 def _object(number: int, record: dict[str, object]) -> SsdbObject:
     label = str(record.get("class") or record.get("name") or "object")
     parent = int(str(record.get("parent_id") or 0))
-    matrix = record.get("transform")
-    return SsdbObject(
-        number,
-        label,
-        resolve(label).category.name,
-        parent or None,
-        None if record.get("model_id") is None else str(record["model_id"]),
-        None if matrix is None else np.array(matrix, dtype=np.float64).reshape(4, 4),
-    )
+    return SsdbObject(number, label, resolve(label).category.name, parent or None)
 
 
 def _segmentation(folder: Path, ids: list[int]) -> np.ndarray:

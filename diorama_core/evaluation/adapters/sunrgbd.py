@@ -1,36 +1,25 @@
-"""SUN RGB-D pictures: a folder with `image/`, `depth_bfx/` (or `depth/`), `intrinsics.txt`, `extrinsics/` and
+"""SUN RGB-D pictures: a folder with `image/`, `depth_bfx/` (or `depth/`), `intrinsics.txt` and
 `annotation2Dfinal/index.json` (polygons), as published.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import cv2
 import numpy as np
-from jaxtyping import Float, Int32
+from jaxtyping import Int32
 
 from diorama_core.artefacts import Inputs, LabelledBox
 from diorama_core.errors import InputError
-from diorama_core.evaluation.adapters.files import read_json, read_matrix
-from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, resolve
+from diorama_core.evaluation.adapters.files import boxes_of, read_json, read_matrix
+from diorama_core.library.taxonomy import ARCHITECTURE_WORDS
 from diorama_core.perception.inputs import read_inputs
 
 
-@dataclass(frozen=True, eq=False)
-class SunScene:
-    """One picture with its annotation."""
-
-    name: str
-    inputs: Inputs
-    R_world_camera: Float[np.ndarray, "3 3"] | None
-    """Tilt of the camera, where the folder has it: world +Z up, camera x right, y down, z forward."""
-
-
-def read_sunrgbd(folder: Path) -> SunScene:
-    """Read one picture's folder; `InputError` says what is missing."""
+def read_sunrgbd(folder: Path) -> Inputs:
+    """Read one picture's folder with its annotation; `InputError` says what is missing."""
     K = read_matrix(folder / "intrinsics.txt", 3, 3)
     depth = _only(folder / ("depth_bfx" if (folder / "depth_bfx").is_dir() else "depth"), "*.png")
     read = read_inputs(
@@ -41,10 +30,8 @@ def read_sunrgbd(folder: Path) -> SunScene:
         max_side=100_000,
     ).inputs
     instances, named = _polygons(folder, (read.photo.height, read.photo.width))
-    inputs = Inputs(
-        read.photo, tuple(b for _, b in named), instances, named, depth_m=read.depth_m, intrinsics=read.intrinsics
-    )
-    return SunScene(folder.name, inputs, _tilt(folder))
+    boxes = tuple(b for _, b in named)
+    return Inputs(read.photo, boxes, instances, named, depth_m=read.depth_m, intrinsics=read.intrinsics)
 
 
 def _only(folder: Path, pattern: str) -> Path:
@@ -65,16 +52,11 @@ def _polygons(
         corners = np.column_stack([polygon["x"], polygon["y"]]).astype(np.float32)
         if label and len(corners) >= 3:
             drawn.append((float(cv2.contourArea(corners)), label, corners))
+    drawn.sort(key=lambda d: -d[0])
     instances = np.zeros(shape, np.int32)
-    for number, (_, _, corners) in enumerate(sorted(drawn, key=lambda d: -d[0]), start=1):
+    for number, (_, _, corners) in enumerate(drawn, start=1):
         cv2.fillPoly(instances, [np.rint(corners).astype(np.int32)], number)
-    named = []
-    for number, (_, label, _) in enumerate(sorted(drawn, key=lambda d: -d[0]), start=1):
-        rows, columns = np.nonzero(instances == number)
-        if len(rows):
-            box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
-            named.append((number, LabelledBox(box, resolve(label).category.name, label)))
-    return instances, tuple(named)
+    return instances, boxes_of(instances, [label for _, label, _ in drawn])
 
 
 def _label(objects: list[Any], index: int) -> str:
@@ -82,13 +64,3 @@ def _label(objects: list[Any], index: int) -> str:
     record = objects[index] if 0 <= index < len(objects) else None
     name = str(record["name"]).split(":")[0].strip().lower() if record else ""
     return "" if name in ARCHITECTURE_WORDS else name
-
-
-def _tilt(folder: Path) -> Float[np.ndarray, "3 3"] | None:
-    files = sorted((folder / "extrinsics").glob("*.txt"))
-    if not files:
-        return None
-    R = read_matrix(files[0], 3, 4)[:, :3]
-    # SUN's axes are x right, y forward, z up; ours of the camera are x right, y down, z forward.
-    swap = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-    return R @ swap

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import logging
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
@@ -14,11 +13,10 @@ from diorama_core.architecture.acdc import AcdcRoom
 from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.architecture.rac.stage import RenderAndCompareRoom
 from diorama_core.artefacts import Inputs
-from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import LeftOut, make_views, recipe
+from diorama_core.evaluation.benchmarks.cases import LeftOut, attempt_one, make_views, recipe
 from diorama_core.evaluation.metrics.architecture import ArchitectureScores, architecture_scores
 from diorama_core.evaluation.reports import paper
-from diorama_core.evaluation.reports.tables import Column, Row, Table, bootstrap_interval, paper_rows
+from diorama_core.evaluation.reports.tables import Column, Figure, Row, Table, bootstrap_interval, figures_table, mean
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
@@ -32,8 +30,6 @@ DEPTH_NOISE = 0.02
 """Relative, per pixel."""
 BASELINE_STEPS = 8 * 580 * 0.075
 """A structured-light sensor's focal length in pixels times its baseline in metres, in eighths of a pixel."""
-
-log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -89,19 +85,17 @@ def run(
     cases = tuple(case for seed in seeds for case in recipe(scenes, 1, seed))
     for k, (case, view) in enumerate(make_views(cases, library, left_out)):
         progress.report(k / len(cases), case.name)
-        noisy = replace(view.inputs, depth_m=sense(view.inputs.depth_m, case.seed))
+        true, noisy = view.inputs, replace(view.inputs, depth_m=sense(view.inputs.depth_m, case.seed))
+        depths = (("true masks and depth", true), ("true masks, depth with 2 % noise", noisy))
+        published = (
+            ("PlainRecon as published", PlainRecon(), (*depths, ("depth of the empty room", _empty(view)))),
+            ("RaC", RenderAndCompareRoom(), depths),
+            ("RaC without refinement", RenderAndCompareRoom(refine=False), depths),
+            ("ACDC", AcdcRoom(), depths),
+        )
         rows: tuple[tuple[str, Inputs, ArchitectureStage | None], ...] = (
-            ("true masks and depth", view.inputs, None),
-            ("true masks, depth with 2 % noise", noisy, None),
-            ("PlainRecon as published, true masks and depth", view.inputs, PlainRecon()),
-            ("PlainRecon as published, true masks, depth with 2 % noise", noisy, PlainRecon()),
-            ("PlainRecon as published, depth of the empty room", _empty(view), PlainRecon()),
-            ("RaC, true masks and depth", view.inputs, RenderAndCompareRoom()),
-            ("RaC, true masks, depth with 2 % noise", noisy, RenderAndCompareRoom()),
-            ("RaC without refinement, true masks and depth", view.inputs, RenderAndCompareRoom(refine=False)),
-            ("RaC without refinement, true masks, depth with 2 % noise", noisy, RenderAndCompareRoom(refine=False)),
-            ("ACDC, true masks and depth", view.inputs, AcdcRoom()),
-            ("ACDC, true masks, depth with 2 % noise", noisy, AcdcRoom()),
+            *((depth, inputs, None) for depth, inputs in depths),
+            *((f"{name}, {depth}", inputs, stage) for name, stage, given in published for depth, inputs in given),
             ("picture and boxes", photo_only(view), None),
         )
         for name, inputs, stage in rows:
@@ -129,58 +123,55 @@ def _empty(view: TruthView) -> Inputs:
 def _room(
     case: str, view: TruthView, inputs: Inputs, library: ShapeLibrary, stage: ArchitectureStage | None
 ) -> RoomResult:
-    stages = embedded_stages(inputs, library)
-    stage = stage or stages.architecture
     begun = time.process_time()
-    try:
-        artefacts = evaluate(stages, {"given": inputs}, ("objects", "supported_geometry"), Runner(None))
-        geometry = artefacts["supported_geometry"]
+
+    def score() -> RoomResult:
+        nonlocal begun
+        stages = embedded_stages(inputs, library)
+        found = evaluate(stages, {"given": inputs}, ("objects", "supported_geometry"), Runner(None))
+        geometry = found["supported_geometry"]
         begun = time.process_time()
-        room = stage.reconstruct(artefacts["inputs"], artefacts["objects"], geometry, Progress())
+        room = (stage or stages.architecture).reconstruct(found["inputs"], found["objects"], geometry, Progress())
         spent = time.process_time() - begun
-        scores = architecture_scores(
-            room.architecture.planes, view.scene.architecture.planes, view.camera, found_camera=geometry.camera
-        )
-        return RoomResult(case, scores, spent)
-    except Cancelled:
-        raise
-    except Exception as error:  # whatever goes wrong, the room counts as failed
-        log.warning("%s failed: %s", case, error)
-        return RoomResult(case, None, time.process_time() - begun)
+        planes, true = room.architecture.planes, view.scene.architecture.planes
+        return RoomResult(case, architecture_scores(planes, true, view.camera, found_camera=geometry.camera), spent)
+
+    result, _ = attempt_one(case, score)
+    return result or RoomResult(case, None, time.process_time() - begun)
+
+
+def _ious(rooms: Sequence[RoomResult]) -> list[float]:
+    """In percent; a room that failed counts as 0."""
+    return [100 * r.scores.iou if r.scores else 0.0 for r in rooms]
+
+
+def _pixel_errors(rooms: Sequence[RoomResult]) -> list[float]:
+    """In percent; a room that failed counts as 100."""
+    return [100 * r.scores.pixel_error if r.scores else 100.0 for r in rooms]
+
+
+def _mean_score(name: str) -> Callable[[Sequence[RoomResult]], float | None]:
+    return lambda rooms: mean(getattr(r.scores, name) for r in rooms if r.scores is not None)
+
+
+FIGURES = (
+    Figure(Column("success", ".2f", "↑"), lambda rooms: mean(float(r.scores is not None) for r in rooms)),
+    Figure(Column("IoU", ".1f", "↑"), lambda rooms: mean(_ious(rooms)), lambda rooms: bootstrap_interval(_ious(rooms))),
+    Figure(
+        Column("PE", ".1f", "↓"),
+        lambda rooms: mean(_pixel_errors(rooms)),
+        lambda rooms: bootstrap_interval(_pixel_errors(rooms)),
+    ),
+    Figure(Column("EE", ".1f", "↓"), _mean_score("edge_error_px")),
+    Figure(Column("RMSE m", ".2f", "↓"), _mean_score("depth_rmse_m")),
+    Figure(Column("CDb", ".3f", "↓"), _mean_score("cdb_m")),
+    Figure(Column("CDb seen", ".3f", "↓"), _mean_score("cdb_seen_m")),
+    Figure(Column("time s", ".2f", "↓"), lambda rooms: mean(r.seconds for r in rooms)),
+)
 
 
 def architecture_table(results: Sequence[tuple[str, Sequence[RoomResult]]]) -> Table:
     """IoU, pixel and edge error, depth error, centred chamfer and time (paper, table 3)."""
-    columns = (
-        Column("success", ".2f", "↑"), Column("IoU", ".1f", "↑"), Column("PE", ".1f", "↓"), Column("EE", ".1f", "↓"),
-        Column("RMSE m", ".2f", "↓"), Column("CDb", ".3f", "↓"), Column("CDb seen", ".3f", "↓"),
-        Column("time s", ".2f", "↓"),
-    )  # fmt: skip
-    rows = []
-    for name, rooms in results:
-        done = [r.scores for r in rooms if r.scores is not None]
-        count = max(len(rooms), 1)
-        rows.append(
-            Row(
-                name,
-                (
-                    len(done) / count,
-                    100 * sum(s.iou for s in done) / count,
-                    100 * (sum(s.pixel_error for s in done) + len(rooms) - len(done)) / count,
-                    _mean([s.edge_error_px for s in done]),
-                    _mean([s.depth_rmse_m for s in done]),
-                    _mean([s.cdb_m for s in done]),
-                    _mean([s.cdb_seen_m for s in done]),
-                    _mean([r.seconds for r in rooms]),
-                ),
-                intervals=(
-                    None,
-                    bootstrap_interval([100 * r.scores.iou if r.scores else 0.0 for r in rooms]),
-                    bootstrap_interval([100 * r.scores.pixel_error if r.scores else 100.0 for r in rooms]),
-                    *(None,) * 5,
-                ),
-            )
-        )
     note = (
         f"{len(results[0][1]) if results else 0} rooms. IoU and PE in percent of pixels, a failed room counting as "
         "0 and 100; EE in pixels of a picture 640 wide (the paper does not state its width); EE, RMSE and CDb over the "
@@ -189,7 +180,7 @@ def architecture_table(results: Sequence[tuple[str, Sequence[RoomResult]]]) -> T
         "(bootstrap over rooms)."
     )
     published = {name: (*values[:-1], None, values[-1]) for name, values in paper.ARCHITECTURE.items()}
-    return Table("Architecture", columns, (*rows, *paper_rows(published)), note)
+    return figures_table("Architecture", results, FIGURES, note, published)
 
 
 def series_table(results: Sequence[tuple[str, Sequence[RoomResult]]]) -> Table:
@@ -201,12 +192,6 @@ def series_table(results: Sequence[tuple[str, Sequence[RoomResult]]]) -> Table:
         values: list[float | None] = []
         for seed in seeds:
             part = [r for r in rooms if r.seed == seed]
-            values.append(_mean([100 * r.scores.iou if r.scores else 0.0 for r in part]))
-            values.append(_mean([100 * r.scores.pixel_error if r.scores else 100.0 for r in part]))
+            values += [mean(_ious(part)), mean(_pixel_errors(part))]
         rows.append(Row(name, tuple(values)))
     return Table("Architecture by series of rooms", columns, tuple(rows))
-
-
-def _mean(values: Sequence[float]) -> float | None:
-    finite = [v for v in values if np.isfinite(v)]
-    return float(np.mean(finite)) if finite else None

@@ -85,49 +85,50 @@ class LeftOut:
     case: str
     reason: str
 
+    def __str__(self) -> str:
+        return f"{self.case} ({self.reason})"
+
 
 def make_views(
     cases: tuple[Case, ...], library: ShapeLibrary, left_out: list[LeftOut]
 ) -> Iterator[tuple[Case, TruthView]]:
-    """`views_of`, going on with the next room where one cannot be furnished or photographed.
-
-    Args:
-        cases: The pictures.
-        library: What rooms are furnished from.
-        left_out: Receives what could not be made.
-    """
-    return ((case, view) for case, (_, view) in attempt(cases, lambda c: next(views_of((c,), library)), left_out))
+    """`view_of` each, going on with the next room where one cannot be furnished or photographed."""
+    return attempt(cases, lambda case: view_of(case, library), left_out)
 
 
 def attempt(
     cases: tuple[Case, ...], make: Callable[[Case], Made], left_out: list[LeftOut]
 ) -> Iterator[tuple[Case, Made]]:
-    """Whatever is made of each case, going on with the next one where that fails.
+    """Whatever is made of each case; what could not be made is added to `left_out`, and the next one follows."""
+    for case in cases:
+        result, reason = attempt_one(case.name, make, case, fate="is left out")
+        if result is None:
+            left_out.append(LeftOut(case.name, reason))
+        else:
+            yield case, result
 
-    Args:
-        cases: The pictures.
-        make: Makes something of one.
-        left_out: Receives what could not be made.
+
+def attempt_one(name: str, work: Callable[..., Made], *given: object, fate: str = "failed") -> tuple[Made | None, str]:
+    """What work makes of what it is given; where it fails, None and why, and the log says what becomes of `name`.
+
+    Raises:
+        Cancelled: on request.
     """
-    for case in cases:
-        try:
-            result = make(case)
-        except Cancelled:
-            raise
-        except Exception as error:  # whatever goes wrong, the other rooms' results are worth keeping
-            log.warning("%s is left out: %s", case.name, error)
-            left_out.append(LeftOut(case.name, f"{type(error).__name__}: {error}"))
-            continue
-        yield case, result
+    try:
+        return work(*given), ""
+    except Cancelled:
+        raise
+    except Exception as error:  # whatever goes wrong, the other results are worth keeping
+        log.warning("%s %s: %s", name, fate, error)
+        return None, f"{type(error).__name__}: {error}"
 
 
-def views_of(cases: tuple[Case, ...], library: ShapeLibrary) -> Iterator[tuple[Case, TruthView]]:
-    """The pictures one after another; a room without enough objects in view gives its next view."""
-    for case in cases:
-        studio, cameras = studio_of(case, library)
-        view = studio.view(cameras[case.view], SIZE, with_empty_room=False)
-        for later in cameras[case.view + 1 :]:
-            if len(view.indices) >= MIN_ASKED:
-                break
-            view = studio.view(later, SIZE, with_empty_room=False)
-        yield case, view
+def view_of(case: Case, library: ShapeLibrary) -> TruthView:
+    """The picture of a case; where it has not enough objects in view, the room's next one."""
+    studio, cameras = studio_of(case, library)
+    view = studio.view(cameras[case.view], SIZE, with_empty_room=False)
+    for later in cameras[case.view + 1 :]:
+        if len(view.indices) >= MIN_ASKED:
+            break
+        view = studio.view(later, SIZE, with_empty_room=False)
+    return view

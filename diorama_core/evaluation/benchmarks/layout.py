@@ -7,16 +7,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 
 import numpy as np
-import torch
 
 from diorama_core.errors import UnavailableError
+from diorama_core.evaluation.metrics.scene import measure_scene
+from diorama_core.evaluation.speed.eager import our_seconds, pair_by_pair_seconds
 from diorama_core.layout.exact import drift, mesh_overlap_m3, stable_share
 from diorama_core.layout.feasible.local import DragSolver
 from diorama_core.layout.problem.problem import build_problem
-from diorama_core.layout.published import costs, staged
 from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe, one_thread
 from diorama_core.layout.recipes import recipe
-from diorama_core.layout.report import measure
 from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Pose, Scene
@@ -134,7 +133,8 @@ def run(scenes: int = 40, seed: int = 0, progress: Progress = SILENT) -> LayoutB
             for factor in (0.5, 1.0, 2.0)
         ]
         times, exponent = _times(seed, feasible, paper, max(scenes // 8, 2), progress.part(0.85, 1.0))
-        speedup = refinement_speedup(rooms[0].observed)
+        one = build_problem(rooms[0].observed, library)
+        speedup = pair_by_pair_seconds(one) / our_seconds(one)
     return LayoutBench(seed, tuple(ablation), tuple(wrong), tuple(noise), tuple(times), exponent, speedup)
 
 
@@ -151,16 +151,7 @@ def _row(name: str, stage: LayoutStage | None, rooms: Sequence[GeneratedRoom], p
         begun = time.thread_time()
         scene = room.observed if stage is None else stage.optimise(room.observed, Progress())[0]
         seconds.append(time.thread_time() - begun)
-        problem = build_problem(room.observed, library)
-        objects = [scene.object(i).pose for i in problem.ids]
-        measured.append(
-            measure(
-                problem,
-                np.array([o.R_world_object for o in objects]),
-                np.array([o.position for o in objects]),
-                np.array([o.scale for o in objects]),
-            )
-        )
+        measured.append(measure_scene(build_problem(room.observed, library), scene))
         offsets.append(offset_m(room.truth, scene))
         overlap_before += mesh_overlap_m3(room.observed, library)
         overlap_after += mesh_overlap_m3(scene, library)
@@ -240,23 +231,3 @@ def _drags(seed: int, feasible: LayoutStage) -> list[Callable[[], object]]:
         solver = DragSolver.prepare(scene, library, item.id)
         calls += [step(solver, item.pose.move(rng.normal(0.0, 0.2, 3) * [1.0, 1.0, 0.1])) for _ in range(6)]
     return calls
-
-
-def refinement_speedup(scene: Scene, steps: int = 2) -> float:
-    """How much faster a step of the batched stage 4 is than summing `e_col` pair by pair through autograd."""
-    problem = build_problem(scene, box_library())
-    state = staged.State(problem.R.copy(), problem.p.copy(), problem.scale.copy())
-    schedule = staged.StageSchedule()
-    begun = time.thread_time()
-    staged.refinement_stage(problem, state, schedule, lambda *_: None)
-    batched = (time.thread_time() - begun) / schedule.steps
-    R, size = torch.tensor(problem.R), torch.tensor(problem.shape_size * problem.scale)
-    begun = time.thread_time()
-    for _ in range(steps):
-        p = torch.tensor(problem.p, requires_grad=True)
-        total = torch.zeros((), dtype=torch.float64)
-        for i in range(problem.count):
-            for j in range(i):
-                total = total + costs.e_col(p, R, size, torch.tensor([[j, i]]))
-        torch.autograd.grad(total, p)
-    return (time.thread_time() - begun) / steps / batched

@@ -6,7 +6,6 @@ stands in Scan2CAD. Support, overlap and bounds need no annotation.
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -17,11 +16,12 @@ from typing import Literal
 import numpy as np
 
 from diorama_core.artefacts import Inputs
-from diorama_core.errors import Cancelled, InputError
+from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.files import read_json
 from diorama_core.evaluation.adapters.scan2cad import AlignedModel, ScanFrame, read_scan2cad
 from diorama_core.evaluation.adapters.ssdb import SsdbScene, read_ssdb
 from diorama_core.evaluation.adapters.sunrgbd import read_sunrgbd
+from diorama_core.evaluation.benchmarks.cases import attempt_one
 from diorama_core.evaluation.metrics.pose import Placed, object_alignment
 from diorama_core.evaluation.metrics.scene import (
     as_placed,
@@ -31,7 +31,7 @@ from diorama_core.evaluation.metrics.scene import (
     support_share,
 )
 from diorama_core.evaluation.reports import paper
-from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
+from diorama_core.evaluation.reports.tables import Column, Row, Table, mean, paper_rows
 from diorama_core.layout.exact import mesh_overlap_m3
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import with_kin
@@ -39,8 +39,6 @@ from diorama_core.pipeline.run import build_scene
 from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.types import Scene, SceneObject
 from diorama_core.synthesis.truth import transform
-
-log = logging.getLogger(__name__)
 
 Dataset = Literal["ssdb", "scan2cad", "sunrgbd"]
 _SCAN2CAD_CLASSES: dict[str, frozenset[str]] = {
@@ -143,8 +141,7 @@ def local_cases(dataset: Dataset, path: Path) -> Iterator[LocalCase]:
             yield _ssdb_case(read_ssdb(marker.parent))
     elif dataset == "sunrgbd":
         for marker in sorted(path.rglob("intrinsics.txt")):
-            scene = read_sunrgbd(marker.parent)
-            yield LocalCase(scene.name, scene.inputs)
+            yield LocalCase(marker.parent.name, read_sunrgbd(marker.parent))
     else:
         annotations = path / "full_annotations.json"
         for scan in sorted(str(r["id_scan"]) for r in read_json(annotations)):
@@ -166,7 +163,8 @@ def _measure(case: LocalCase, library: ShapeLibrary, progress: Progress) -> Loca
     asked = [number for number, _ in case.inputs.instance_boxes]
     models = () if case.frame is None else tuple(m for m in case.frame.models if _is_in_picture(m, case.frame))
     begun = time.process_time()
-    try:
+
+    def measure() -> LocalResult:
         scene = build_scene(case.inputs, library, progress=Progress(token=progress.token)).scene
         spent = time.process_time() - begun
         by_mask = {o.mask_id: o for o in scene.objects if o.mask_id is not None}
@@ -187,15 +185,13 @@ def _measure(case: LocalCase, library: ShapeLibrary, progress: Progress) -> Loca
             spent,
             "" if scene.objects else "no object came out",
         )
-    except Cancelled:
-        raise
-    except Exception as error:  # whatever goes wrong, the picture counts as failed
-        log.warning("%s failed: %s", case.name, error)
-        missed = tuple((m.category, False) for m in models)
-        spent = time.process_time() - begun
-        relation = None if case.parents is None else 0.0
-        failure = f"{type(error).__name__}: {error}"
-        return LocalResult(case.name, len(asked), 0, 0.0, relation, missed, 0.0, 0.0, 1.0, None, spent, failure)
+
+    result, failure = attempt_one(case.name, measure)
+    if result is not None:
+        return result
+    missed, relation = tuple((m.category, False) for m in models), None if case.parents is None else 0.0
+    spent = time.process_time() - begun
+    return LocalResult(case.name, len(asked), 0, 0.0, relation, missed, 0.0, 0.0, 1.0, None, spent, failure)
 
 
 def _relation(case: LocalCase, scene: Scene, by_mask: dict[int, SceneObject]) -> float | None:
@@ -241,42 +237,30 @@ def scan2cad_class(category: str) -> str:
 
 def local_table(dataset: Dataset, results: Sequence[LocalResult]) -> Table:
     """What the annotation, and the scene itself, can tell."""
-    columns = (
-        Column("pictures", "d"), Column("failed", "d", "↓"), Column("found", better="↑"),
-        Column("image IoU", better="↑"), Column("relation", better="↑"), Column("structure", better="↑"),
-        Column("supported", better="↑"), Column("out of bounds", better="↓"), Column("meshes l", ".2f", "↓"),
-        Column("time s", ".1f", "↓"),
-    )  # fmt: skip
-    asked = max(sum(r.asked for r in results), 1)
-    keys = ("image_iou", "relation", "structure", "supported", "out_of_bounds", "mesh_overlap_l", "seconds")
-    row = Row(
-        "embedded",
-        (
-            len(results),
-            sum(bool(r.failure) for r in results),
-            sum(r.found for r in results) / asked,
-            *(_mean([getattr(r, key) for r in results]) for key in keys),
-        ),
-    )
+    keys = {
+        "image_iou": Column("image IoU", better="↑"), "relation": Column("relation", better="↑"),
+        "structure": Column("structure", better="↑"), "supported": Column("supported", better="↑"),
+        "out_of_bounds": Column("out of bounds", better="↓"), "mesh_overlap_l": Column("meshes l", ".2f", "↓"),
+        "seconds": Column("time s", ".1f", "↓"),
+    }  # fmt: skip
+    counted = (Column("pictures", "d"), Column("failed", "d", "↓"), Column("found", better="↑"))
+    found = sum(r.found for r in results) / max(sum(r.asked for r in results), 1)
+    means = (mean(getattr(r, key) for r in results) for key in keys)
+    row = Row("embedded", (len(results), sum(bool(r.failure) for r in results), found, *means))
+    columns = (*counted, *keys.values())
     return Table(f"Scenes of {dataset}", columns, (row,), "Pictures that fail count as wrong in every share.")
 
 
 def alignment_table(results: Sequence[LocalResult]) -> Table:
     """Percent of Scan2CAD's models aligned, by category (paper, supplement)."""
     rows = [(scan2cad_class(name), hit) for r in results for name, hit in r.aligned]
-    by = {c: [hit for name, hit in rows if (name if name in paper.CATEGORIES else "others") == c] for c in
-          paper.CATEGORIES}  # fmt: skip
-    each = [_percent(by[c]) for c in paper.CATEGORIES]
-    columns = tuple(Column(c, ".1f", "↑") for c in (*paper.CATEGORIES, "class mean", "instance mean"))
-    ours = Row("embedded", (*each, _mean(each), _percent([hit for _, hit in rows])))
+    known = paper.CATEGORIES
+    each = [_percent([hit for name, hit in rows if (name if name in known else "others") == c]) for c in known]
+    columns = tuple(Column(c, ".1f", "↑") for c in (*known, "class mean", "instance mean"))
+    ours = Row("embedded", (*each, mean(each), _percent([hit for _, hit in rows])))
     note = f"{len(rows)} models whose middle is in the picture."
     return Table("Alignment by category", columns, (ours, *paper_rows(paper.BY_CATEGORY)), note)
 
 
 def _percent(hits: Sequence[bool]) -> float | None:
     return 100 * float(np.mean(hits)) if hits else None
-
-
-def _mean(values: Sequence[float | None]) -> float | None:
-    known = [v for v in values if v is not None]
-    return float(np.mean(known)) if known else None

@@ -9,7 +9,6 @@ the photo and both models show the object: what hangs behind its wall shows none
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -20,8 +19,7 @@ import trimesh
 from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.appearance.photo_appearance import PhotoAppearance
-from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import make_views, recipe
+from diorama_core.evaluation.benchmarks.cases import attempt_one, make_views, recipe
 from diorama_core.evaluation.benchmarks.pose_comparison import (
     ESTIMATED_DEPTH,
     REMOVED,
@@ -32,7 +30,7 @@ from diorama_core.evaluation.benchmarks.pose_comparison import (
 )
 from diorama_core.evaluation.metrics.colour import delta_e_2000, lab_of, light_error_deg, main_light
 from diorama_core.evaluation.metrics.shape import chamfer, points_of, shape_distance
-from diorama_core.evaluation.reports.tables import Column, Row, Table
+from diorama_core.evaluation.reports.tables import Column, Row, Table, mean
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.geometry.window import Window
 from diorama_core.library.record import ShapeLibrary
@@ -45,8 +43,6 @@ from diorama_core.scene.types import Camera, Pose, Scene, SceneObject
 from diorama_core.synthesis.artefacts import TrueShapes
 from diorama_core.synthesis.light import room_light
 from diorama_core.synthesis.truth import TruthView
-
-log = logging.getLogger(__name__)
 
 GIVEN: Mapping[str, str] = {"measured depth": TRUE_DEPTH, "picture alone": ESTIMATED_DEPTH}
 """What is given besides the picture and true masks."""
@@ -115,12 +111,12 @@ class LookBench:
 
     def _row(self, given: str, made_s: float, materials_s: float) -> Row:
         mine = [o for o in self.objects if o.given == given]
-        means = [_mean([getattr(o, f"chamfer_{k}") for o in mine]) for k in ("of_shape", "before", "after")]
+        means = [mean(getattr(o, f"chamfer_{k}") for o in mine) for k in ("of_shape", "before", "after")]
         medians = [float(np.median([getattr(o, f"chamfer_{k}") for o in mine])) for k in ("before", "after")]
-        outlines = [_mean([getattr(o, f"outline_{k}") for o in mine]) for k in ("before", "after")]
+        outlines = [mean(getattr(o, f"outline_{k}") for o in mine) for k in ("before", "after")]
         coloured = [o for o in mine if o.colour_before is not None and o.colour_after is not None]
-        colours = [_mean([getattr(o, f"colour_{k}") for o in coloured]) for k in ("before", "after")]
-        light = _mean([error for of, error in self.light_errors_deg if of == given])
+        colours = [mean(getattr(o, f"colour_{k}") for o in coloured) for k in ("before", "after")]
+        light = mean(error for of, error in self.light_errors_deg if of == given)
         return Row(given, (len(mine), *means, *medians, *outlines, *colours, light, made_s, materials_s))
 
     def to_json(self) -> dict[str, object]:
@@ -157,13 +153,11 @@ def run(
     for number, (case, view) in enumerate(make_views(cases, library, [])):
         for turn, given in enumerate(GIVEN):
             progress.report((number + turn / len(GIVEN)) / len(cases), f"{case.name}: {given}")
-            try:
-                looks, times, off_deg = _one_room(case.name, view, given, library, show)
-            except Cancelled:
-                raise
-            except Exception as error:  # whatever goes wrong, the other rooms' results are worth keeping
-                log.warning("%s with %s is left out: %s", case.name, given, error)
+            name = f"{case.name} with {given}"
+            result, _ = attempt_one(name, _one_room, case.name, view, given, library, show, fate="is left out")
+            if result is None:
                 continue
+            looks, times, off_deg = result
             objects += looks
             spent[given].append(times)
             lights += [] if off_deg is None else [(given, off_deg)]
@@ -289,7 +283,3 @@ def _index(scene: Scene, object_id: str) -> int:
 def _mean_times(times: Sequence[tuple[float, float, int]]) -> tuple[float, float]:
     made, materials, count = np.sum(times, axis=0)
     return float(made / count), float(materials / count)
-
-
-def _mean(values: Sequence[float]) -> float | None:
-    return float(np.mean(values)) if values else None

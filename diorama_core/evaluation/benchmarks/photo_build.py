@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import logging
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -20,13 +19,13 @@ from pathlib import Path
 import cv2
 import numpy as np
 from jaxtyping import Float, UInt8
-from numpy import ndarray
 
 from diorama_core.architecture.texture.colours import colour_planes
 from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.artefacts import DetectedObject
-from diorama_core.errors import Cancelled, InputError
+from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto
+from diorama_core.evaluation.benchmarks.cases import attempt_one
 from diorama_core.evaluation.benchmarks.photo_perturbations import AnnotatedInputs, perturb
 from diorama_core.evaluation.benchmarks.system import Show
 from diorama_core.evaluation.metrics.annotated import ObjectResult, measure, not_built
@@ -117,12 +116,18 @@ def case_writer(folder: Path, library: ShapeLibrary) -> Show:
 
 def case_picture(view: TruthView, results: Sequence[Built | None], library: ShapeLibrary) -> UInt8[np.ndarray, "h w 3"]:
     """The photo, then every result through its own camera and from outside; grey where nothing was built."""
-    strip = cv2.resize(view.inputs.photo.rgb, SIZE, interpolation=cv2.INTER_AREA)
+    return _strip(view.inputs.photo.rgb, results, library, SIZE)
+
+
+def _strip(
+    photo: UInt8[np.ndarray, "_ _ 3"], results: Sequence[Built | None], library: ShapeLibrary, size: tuple[int, int]
+) -> UInt8[np.ndarray, "h w 3"]:
+    strip = cv2.resize(photo, size, interpolation=cv2.INTER_AREA)
     for built in results:
         for look in ("photo", "orbit:30"):
-            seen = np.full((SIZE[1], SIZE[0], 3), 128, np.uint8)
+            seen = np.full((size[1], size[0], 3), 128, np.uint8)
             if built is not None and (look != "photo" or built.scene.camera is not None):
-                seen = picture(built.scene, library, view=look, size=SIZE, textures=built.textures)
+                seen = picture(built.scene, library, view=look, size=size, textures=built.textures)
             strip = side_by_side(strip, seen, gap=4)
     return strip
 
@@ -137,6 +142,13 @@ def side_by_side(
     return np.concatenate([photo, np.full((height, gap, 3), 255, np.uint8), resized], axis=1)
 
 
+def grid(tiles: Sequence[UInt8[np.ndarray, "_ _ 3"]], columns: int) -> UInt8[np.ndarray, "_ _ 3"]:
+    """Pictures of one size in rows of so many; white where there is none."""
+    filled = [*tiles, *[np.full_like(tiles[0], 255)] * (-len(tiles) % columns)]
+    rows = [np.concatenate(filled[k : k + columns], axis=1) for k in range(0, len(filled), columns)]
+    return np.concatenate(rows)
+
+
 def write_picture(path: Path, rgb: UInt8[np.ndarray, "h w 3"]) -> None:
     """A PNG or JPEG, as the name says."""
     if path.suffix.lower() not in (".png", ".jpg", ".jpeg"):
@@ -145,8 +157,6 @@ def write_picture(path: Path, rgb: UInt8[np.ndarray, "h w 3"]) -> None:
     _, data = cv2.imencode(path.suffix.lower(), rgb[..., ::-1], quality)
     write_atomically(path, data.tobytes(), error=InputError)
 
-
-log = logging.getLogger(__name__)
 
 _UNNAMED = "object"
 TILE_PX = (400, 300)
@@ -219,27 +229,25 @@ def build_photo(task: PhotoTask, library: ShapeLibrary, progress: Progress = SIL
     Raises:
         Cancelled: on request.
     """
-    begun = time.process_time()
-    key = task.key()
-    try:
+    begun, key = time.process_time(), task.key()
+
+    def compare() -> PhotoScores:
         case = read_annotated_inputs(task)
         stages = with_settings(embedded_stages(case.inputs, library), task.settings)
         built = build_scene(case.inputs, library, stages=stages, cache=task.cache, progress=progress)
         spent = time.process_time() - begun
         objects = _objects(task.name, case, built, library)
         if task.tile is not None:
-            write_picture(task.tile, _tile(case, built, library))
+            write_picture(task.tile, _strip(case.inputs.photo.rgb, (built,), library, TILE_PX))
         ghosts = floor_ghosts(built), ghosts_unmarked(built)
         return PhotoScores(task.name, objects, *ghosts, spent, "", task.perturbation, key)
-    except Cancelled:
-        raise
-    except Exception as error:  # whatever goes wrong, the photo counts as failed and the others go on
-        log.warning("%s failed: %s", task.title, error)
-        wrong = tuple(not_built(task.name, i, annotated) for i, annotated in enumerate(task.annotation.objects))
-        spent = time.process_time() - begun
-        return PhotoScores(
-            task.name, wrong, None, None, spent, f"{type(error).__name__}: {error}", task.perturbation, key
-        )
+
+    result, failure = attempt_one(task.title, compare)
+    if result is not None:
+        return result
+    wrong = tuple(not_built(task.name, i, annotated) for i, annotated in enumerate(task.annotation.objects))
+    spent = time.process_time() - begun
+    return PhotoScores(task.name, wrong, None, None, spent, failure, task.perturbation, key)
 
 
 def read_annotated_inputs(task: PhotoTask) -> AnnotatedInputs:
@@ -273,12 +281,3 @@ def _objects(name: str, case: AnnotatedInputs, built: Built, library: ShapeLibra
         for i, annotated in enumerate(case.annotation.objects)
     )
     return tuple(replace(result, index=k) for k, result in zip(case.indices, results, strict=True))
-
-
-def _tile(case: AnnotatedInputs, built: Built, library: ShapeLibrary) -> UInt8[ndarray, "h w 3"]:
-    """The photo, its scene from the same place, and the scene from outside."""
-    photo = cv2.resize(case.inputs.photo.rgb, TILE_PX, interpolation=cv2.INTER_AREA)
-    for view in ("photo", "orbit:30"):
-        seen = picture(built.scene, library, view=view, size=TILE_PX, textures=built.textures)
-        photo = side_by_side(photo, seen, gap=4)
-    return photo

@@ -71,15 +71,23 @@ def mirror(case: AnnotatedInputs, _: np.random.Generator) -> AnnotatedInputs:
 def jitter(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:
     """Given boxes whose edges are off; the annotation stays where it was."""
     photo = case.inputs.photo
+    moved = (replace(b, box=jitter_box(b.box, (photo.width, photo.height), JITTER, rng)) for b in case.inputs.boxes)
+    return replace(case, inputs=replace(case.inputs, boxes=tuple(moved)))
 
-    def move(box: Box) -> Box:
-        extent = np.tile([box[2] - box[0], box[3] - box[1]], 2)
-        x1, y1, x2, y2 = np.array(box) + JITTER * extent * rng.standard_normal(4)
-        x1, y1 = min(max(x1, 0.0), photo.width - 2.0), min(max(y1, 0.0), photo.height - 2.0)
-        return float(x1), float(y1), float(min(max(x2, x1 + 2), photo.width)), float(min(max(y2, y1 + 2), photo.height))
 
-    boxes = tuple(replace(b, box=move(b.box)) for b in case.inputs.boxes)
-    return replace(case, inputs=replace(case.inputs, boxes=boxes))
+def jitter_box(box: Box, size: tuple[int, int], share: float, rng: np.random.Generator) -> Box:
+    """A box whose edges are off, as what people and detectors draw is.
+
+    Args:
+        box: in pixels.
+        size: width and height of the picture, which the box stays in.
+        share: standard deviation of the edges, as a share of the box.
+        rng: of the errors.
+    """
+    extent, (width, height) = np.tile([box[2] - box[0], box[3] - box[1]], 2), size
+    x1, y1, x2, y2 = np.array(box) + share * extent * rng.standard_normal(4)
+    x1, y1 = min(max(x1, 0.0), width - 2.0), min(max(y1, 0.0), height - 2.0)
+    return float(x1), float(y1), float(min(max(x2, x1 + 2), width)), float(min(max(y2, y1 + 2), height))
 
 
 def drop(case: AnnotatedInputs, rng: np.random.Generator) -> AnnotatedInputs:

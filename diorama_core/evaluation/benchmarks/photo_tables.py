@@ -2,49 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from diorama_core.evaluation.benchmarks.photo_build import PhotoScores
 from diorama_core.evaluation.metrics.annotated import ObjectResult
-from diorama_core.evaluation.reports.tables import Column, Row, Table, Value, paired_interval, statistic_interval
+from diorama_core.evaluation.reports.tables import (
+    Column,
+    Figure,
+    Row,
+    Table,
+    Value,
+    difference,
+    mean,
+    paired_interval,
+    statistic_interval,
+)
 
 Results = Sequence[PhotoScores]
 
 
-@dataclass(frozen=True)
-class Figure:
-    """One figure of some photos."""
-
-    column: Column
-    of: Callable[[Results], float | None]
-    """None where the annotations state nothing to compare with."""
-
-
-def _mean(values: Sequence[float | None]) -> float | None:
-    known = [v for v in values if v is not None]
-    return float(np.mean(known)) if known else None
-
-
-def _median(values: Sequence[float | None]) -> float | None:
+def _median(values: Iterable[float | None]) -> float | None:
     known = [v for v in values if v is not None]
     return float(np.median(known)) if known else None
 
 
 def _pool_objects(
-    value: Callable[[ObjectResult], float | None], pooled: Callable[[Sequence[float | None]], float | None] = _mean
+    value: Callable[[ObjectResult], float | None], pooled: Callable[[Iterable[float | None]], float | None] = mean
 ) -> Callable[[Results], float | None]:
     return lambda results: pooled([value(o) for r in results for o in r.objects])
 
 
 def _form(results: Results) -> float | None:
-    return _mean([right for r in results for o in r.objects for right in o.form.values()])
+    return mean([right for r in results for o in r.objects for right in o.form.values()])
 
 
 def _pool_photos(value: Callable[[PhotoScores], float | None]) -> Callable[[Results], float | None]:
-    return lambda results: _mean([value(r) for r in results if not r.failure])
+    return lambda results: mean([value(r) for r in results if not r.failure])
 
 
 OF_OBJECTS = (
@@ -81,29 +77,33 @@ def overall_table(results: Results, *, named: bool, missing: Sequence[str] = ())
     notes += [f"{r.title} failed: {r.failure}" for r in results if r.failure]
     note = f"{_INTERVALS} Photos that fail count as wrong. {'; '.join(notes)}"
     columns = (_OBJECTS, *(figure.column for figure in FIGURES))
-    return Table(f"Annotated photos, {_words(named)}", columns, tuple(rows), note.strip())
+    return Table(f"Annotated photos, {'plain words' if named else 'no words'}", columns, tuple(rows), note.strip())
 
 
 def fronts_table(results: Results) -> Table:
     """Fronts by the true kind, the most frequent first."""
-    of: dict[str, list[bool]] = {}
-    for annotated in (o for r in results for o in r.objects):
-        if annotated.front is not None:
-            of.setdefault(annotated.kind, []).append(annotated.front)
-    kinds = sorted(of, key=lambda kind: (-len(of[kind]), kind))
-    rows = tuple(Row(kind, (len(of[kind]), _mean(of[kind]))) for kind in kinds)
+    of = _group((o.kind, o.front) for r in results for o in r.objects if o.front is not None)
+    rows = tuple(_right_row(kind, of[kind]) for kind in sorted(of, key=lambda kind: (-len(of[kind]), kind)))
     return Table("Fronts by kind", (_OBJECTS, Column("front", better="↑")), rows, "Right within 45 degrees.")
 
 
 def form_table(results: Results) -> Table:
     """The attributes of form."""
-    of: dict[str, list[bool]] = {}
-    for annotated in (o for r in results for o in r.objects):
-        for name, right in annotated.form.items():
-            of.setdefault(name, []).append(right)
-    rows = tuple(Row(name, (len(right), _mean(right))) for name, right in sorted(of.items()))
+    of = _group(pair for r in results for o in r.objects for pair in o.form.items())
+    rows = tuple(_right_row(name, right) for name, right in sorted(of.items()))
     note = "Of objects whose annotation and whose chosen shape's design both state the attribute."
     return Table("Form", (_OBJECTS, Column("right", better="↑")), rows, note)
+
+
+def _group(pairs: Iterable[tuple[str, bool]]) -> dict[str, list[bool]]:
+    of: dict[str, list[bool]] = {}
+    for name, right in pairs:
+        of.setdefault(name, []).append(right)
+    return of
+
+
+def _right_row(name: str, right: Sequence[bool]) -> Row:
+    return Row(name, (len(right), mean(right)))
 
 
 def folds_table(folds: Sequence[Results], *, fitted: bool) -> Table:
@@ -111,9 +111,9 @@ def folds_table(folds: Sequence[Results], *, fitted: bool) -> Table:
     named = [(f"fold {k + 1}", _values(fold)) for k, fold in enumerate(folds)]
     values = [[row[c] for _, row in named] for c in range(len(FIGURES) + 1)]
     known = [[float(v) for v in column if isinstance(v, (int, float))] for column in values]
-    mean: tuple[Value, ...] = (round(float(np.mean(known[0]))), *(_mean(column) for column in known[1:]))
+    means: tuple[Value, ...] = (round(float(np.mean(known[0]))), *(mean(column) for column in known[1:]))
     spread: tuple[Value, ...] = (None, *(float(np.std(c, ddof=1)) if len(c) > 1 else None for c in known[1:]))
-    rows = (*(Row(name, row) for name, row in named), Row("mean", mean), Row("spread", spread))
+    rows = (*(Row(name, row) for name, row in named), Row("mean", means), Row("spread", spread))
     note = "Settings of each fold were fitted on the others." if fitted else "Every fold with the same settings."
     columns = (_OBJECTS, *(figure.column for figure in FIGURES))
     return Table("Folds of photos", columns, rows, f"{note} Spread: standard deviation over folds.")
@@ -128,7 +128,7 @@ def perturbation_tables(plain: Results, perturbed: Mapping[str, Results]) -> tup
         pairs = [(_restrict(of_photo[r.photo], r), r) for r in results if r.photo in of_photo]
         before, after = [a for a, _ in pairs], [b for _, b in pairs]
         rows.append(Row(name, _values(after)[: len(columns)]))
-        changes = [_difference(figure.of(after), figure.of(before)) for figure in OF_OBJECTS]
+        changes = [difference(figure.of(after), figure.of(before)) for figure in OF_OBJECTS]
         spans = [paired_interval(before, after, figure.of) for figure in OF_OBJECTS]
         differences.append(Row(name, (_count(after), *changes), intervals=(None, *spans)))
     note = f"Perturbed less unperturbed, of the same objects. {_INTERVALS}"
@@ -150,11 +150,3 @@ def _values(results: Results) -> tuple[Value, ...]:
 
 def _count(results: Results) -> int:
     return sum(len(r.objects) for r in results)
-
-
-def _difference(after: float | None, before: float | None) -> float | None:
-    return None if after is None or before is None else after - before
-
-
-def _words(named: bool) -> str:
-    return "plain words" if named else "no words"

@@ -19,7 +19,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import picture_of, read_annotations, read_intrinsics
-from diorama_core.evaluation.benchmarks.photo_build import PhotoScores, PhotoTask, build_photo
+from diorama_core.evaluation.benchmarks.photo_build import PhotoScores, PhotoTask, build_photo, grid
 from diorama_core.evaluation.benchmarks.photo_tables import (
     folds_table,
     form_table,
@@ -194,7 +194,8 @@ def run(
         progress: reports and cancellation.
     """
     of_key = {r.key: r for r in known if not r.failure}
-    done = {task.title: of_key[key] for task in asked.tasks if (key := task.key()) in of_key and _has_tile(task)}
+    drawn = (task for task in asked.tasks if task.tile is None or task.tile.is_file())
+    done = {task.title: of_key[key] for task in drawn if (key := task.key()) in of_key}
     waiting = [task for task in asked.tasks if task.title not in done]
 
     def take(task: PhotoTask, result: PhotoScores) -> None:
@@ -217,10 +218,6 @@ def run(
             take(task, build_photo(task, library, part))
     progress.report(1.0, "done")
     return so_far()
-
-
-def _has_tile(task: PhotoTask) -> bool:
-    return task.tile is None or task.tile.is_file()
 
 
 def read_results(path: Path) -> list[PhotoScores]:
@@ -260,9 +257,7 @@ def sheet(bench: PhotosBench) -> UInt8[np.ndarray, "_ _ 3"]:
     tiles = [_caption(picture[..., ::-1], title) for title, picture in pictures if picture is not None]
     if not tiles:
         raise InputError("no photo was built, so there is nothing to show in a sheet")
-    tiles += [np.full_like(tiles[0], 255)] * (-len(tiles) % SHEET_COLUMNS)
-    rows = [np.concatenate(tiles[k : k + SHEET_COLUMNS], axis=1) for k in range(0, len(tiles), SHEET_COLUMNS)]
-    return np.concatenate(rows)
+    return grid(tiles, SHEET_COLUMNS)
 
 
 def _caption(tile: UInt8[np.ndarray, "h w 3"], words: str) -> UInt8[np.ndarray, "_ w 3"]:

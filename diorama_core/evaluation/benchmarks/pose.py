@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, replace
 from typing import TypeVar
 
-import numpy as np
-
 from diorama_core.artefacts import RankedShapes
-from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import make_views, recipe
+from diorama_core.evaluation.benchmarks.cases import attempt_one, make_views, recipe
 from diorama_core.evaluation.benchmarks.pose_comparison import (
     BASELINES,
     COMPARED_SHAPES,
@@ -29,7 +25,7 @@ from diorama_core.evaluation.benchmarks.pose_comparison import (
     shapes_of,
 )
 from diorama_core.evaluation.benchmarks.pose_tables import (
-    GroupCounts,
+    ObjectShares,
     ablation_table,
     all_in_one_table,
     category_table,
@@ -39,7 +35,7 @@ from diorama_core.evaluation.benchmarks.pose_tables import (
 )
 from diorama_core.evaluation.benchmarks.retrieval import object_groups
 from diorama_core.evaluation.metrics.pose import object_alignment, pair_checks
-from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, match_all
+from diorama_core.evaluation.metrics.scene import Matched, align_to_truth
 from diorama_core.evaluation.reports import paper
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe
@@ -52,8 +48,6 @@ from diorama_core.scene.types import Scene, Support
 from diorama_core.synthesis.artefacts import true_supports
 from diorama_core.synthesis.truth import TruthView
 
-log = logging.getLogger(__name__)
-
 RETRIEVALS = (1, 4, 8)
 PAPER_LAYOUT = "O, P, S, R"
 """The row of the optimiser's ablation in which all four stages run."""
@@ -61,34 +55,43 @@ CATEGORY_NAMES = {"trash can": "bin", "television": "display", "monitor": "displ
 """Scan2CAD's names of categories, where they differ."""
 _PUBLISHED = {(TRUE_DEPTH, GIVEN): paper.POSE_TRUE_DEPTH, (ESTIMATED_DEPTH, GIVEN): paper.POSE_ESTIMATED_DEPTH}
 
+Name = TypeVar("Name")
 Result = TypeVar("Result")
+
+
+def _rows_of(*names: Name) -> dict[Name, list[PoseScores]]:
+    return {name: [] for name in names}
 
 
 @dataclass(frozen=True)
 class PoseBench:
-    """Named results; every list has one entry per room."""
+    """Results by name; every list has one entry per room, those of groups one per object."""
 
     seed: int
-    compared: tuple[tuple[str, str, tuple[tuple[str, tuple[PoseScores, ...]], ...]], ...]
-    """(depth, shapes, solvers by name)."""
-    retrievals: tuple[tuple[int, tuple[PoseScores, ...], tuple[PoseScores, ...]], ...]
-    """(shapes kept, with true depth, with estimated depth)."""
-    ablation: tuple[tuple[str, tuple[PoseScores, ...]], ...]
-    groups: tuple[tuple[str, GroupCounts], ...]
+    compared: Mapping[tuple[str, str], Mapping[str, list[PoseScores]]] = field(
+        default_factory=lambda: {condition: _rows_of(OURS, *BASELINES) for condition in CONDITIONS}
+    )
+    """By depth and shapes, and by solver."""
+    retained: Mapping[str, Mapping[int, list[PoseScores]]] = field(
+        default_factory=lambda: {depth: _rows_of(*RETRIEVALS) for depth in (TRUE_DEPTH, ESTIMATED_DEPTH)}
+    )
+    """By depth and shapes kept."""
+    ablation: dict[str, list[PoseScores]] = field(default_factory=dict)
+    groups: dict[str, list[ObjectShares]] = field(default_factory=dict)
     """With true depth and true shapes, by group and by "category: ..."."""
-    groups_after: tuple[tuple[str, GroupCounts], ...] = ()
-    """Counts by group after the paper's four stages of layout."""
+    groups_after: dict[str, list[ObjectShares]] = field(default_factory=dict)
+    """After the paper's four stages of layout."""
 
     def tables(self) -> tuple[Table, ...]:
         """The solvers under every condition, then the paper's group, retrieval-count, ablation and category tables."""
         return (
             *(
                 comparison_table(f"Pose, {depth}, {shapes}", solvers, _PUBLISHED.get((depth, shapes)))
-                for depth, shapes, solvers in self.compared
+                for (depth, shapes), solvers in self.compared.items()
             ),
             groups_table(self.groups),
             groups_table(self.groups_after, "after the paper's layout"),
-            retrievals_table(self.retrievals),
+            retrievals_table(*self.retained.values()),
             ablation_table(self.ablation),
             all_in_one_table(self.ablation),
             category_table(self.groups),
@@ -97,48 +100,16 @@ class PoseBench:
     def to_json(self) -> dict[str, object]:
         """Tables and every room."""
         compared = {
-            f"{depth}, {shapes}: {name}": [asdict(s) for s in rows]
-            for depth, shapes, solvers in self.compared
-            for name, rows in solvers
+            f"{depth}, {shapes}: {name}": rows
+            for (depth, shapes), solvers in self.compared.items()
+            for name, rows in solvers.items()
         }
         return {
             "bench": "pose",
             "seed": self.seed,
             "tables": [t.to_json() for t in self.tables()],
-            "rooms": compared | {name: [asdict(s) for s in rows] for name, rows in self.ablation},
+            "rooms": {name: [asdict(s) for s in rows] for name, rows in (compared | self.ablation).items()},
         }
-
-
-class _Tally:
-    """Results of the rooms so far."""
-
-    def __init__(self) -> None:
-        solvers = (OURS, *BASELINES)
-        self.compared: dict[tuple[str, str], dict[str, list[PoseScores]]] = {
-            condition: {name: [] for name in solvers} for condition in CONDITIONS
-        }
-        self.retained: dict[str, dict[int, list[PoseScores]]] = {
-            depth: {k: [] for k in RETRIEVALS} for depth in (TRUE_DEPTH, ESTIMATED_DEPTH)
-        }
-        self.ablation: dict[str, list[PoseScores]] = {}
-        self.groups: dict[str, list[tuple[float, ...]]] = {}
-        self.groups_after: dict[str, list[tuple[float, ...]]] = {}
-
-    def result(self, seed: int) -> PoseBench:
-        """All of them."""
-        true, estimated = self.retained[TRUE_DEPTH], self.retained[ESTIMATED_DEPTH]
-        poses = tuple((k, tuple(true[k]), tuple(estimated[k])) for k in RETRIEVALS)
-        return PoseBench(
-            seed,
-            tuple(
-                (*condition, tuple((name, tuple(rows)) for name, rows in solvers.items()))
-                for condition, solvers in self.compared.items()
-            ),
-            poses,
-            tuple((name, tuple(rows)) for name, rows in self.ablation.items()),
-            tuple((name, _counts(rows)) for name, rows in sorted(self.groups.items())),
-            tuple((name, _counts(rows)) for name, rows in sorted(self.groups_after.items())),
-        )
 
 
 def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progress = SILENT) -> PoseBench:
@@ -152,33 +123,33 @@ def run(library: ShapeLibrary, scenes: int = 6, seed: int = 0, progress: Progres
         seed: of the series of rooms.
         progress: reports and cancellation.
     """
-    tally = _Tally()
+    bench = PoseBench(seed)
     solvers = SideBySide.create_embedded(library)
     cases = recipe(scenes, 1, seed)
     for number, (case, view) in enumerate(make_views(cases, library, [])):
         step = progress.part(number / len(cases), (number + 1) / len(cases))
-        _one_room(view, solvers, tally, step, case.name)
+        _one_room(view, solvers, bench, step, case.name)
     progress.report(1.0, "done")
-    return tally.result(seed)
+    return bench
 
 
-def _one_room(view: TruthView, solvers: SideBySide, tally: _Tally, progress: Progress, name: str) -> None:
+def _one_room(view: TruthView, solvers: SideBySide, bench: PoseBench, progress: Progress, name: str) -> None:
     library = solvers.library
     depths = tuple(dict.fromkeys(depth for depth, _ in CONDITIONS))
     progress.report(0.0, f"{name}: perception")
     seen = {d: _try(predict, inputs_with(view, d), library) for d in depths}
-    asked_for = {*tally.retained, *(depth for depth, shapes in CONDITIONS if shapes != GIVEN)}
+    asked_for = {*bench.retained, *(depth for depth, shapes in CONDITIONS if shapes != GIVEN)}
     retrieved = {d: _retrieve(solvers, seen[d]) for d in depths if d in asked_for}
     for turn, (depth, shapes) in enumerate(CONDITIONS):
         progress.report(0.1 + 0.1 * turn, f"{name}: {depth}, {shapes}")
         scenes = _scenes(view, solvers, seen[depth], retrieved.get(depth), shapes)
-        for solver, rows in tally.compared[depth, shapes].items():
+        for solver, rows in bench.compared[depth, shapes].items():
             rows.append(pose_scores(view, scenes.get(solver), library))
         if (depth, shapes) == (TRUE_DEPTH, GIVEN):
-            _count_groups(view, scenes.get(OURS), library, tally.groups)
-            arranged = _arrange(view, scenes.get(OURS), library, tally.ablation, progress)
-            _count_groups(view, arranged.get(PAPER_LAYOUT), library, tally.groups_after)
-    for depth, by_count in tally.retained.items():
+            _count_groups(view, scenes.get(OURS), library, bench.groups)
+            arranged = _arrange(view, scenes.get(OURS), library, bench.ablation, progress)
+            _count_groups(view, arranged.get(PAPER_LAYOUT), library, bench.groups_after)
+    for depth, by_count in bench.retained.items():
         for k, rows in by_count.items():
             progress.report(0.8, f"{name}: {k} shapes kept, {depth}")
             first = _firsts(retrieved[depth], k)
@@ -211,13 +182,7 @@ def _scenes(
 
 def _try(work: Callable[..., Result], *given: object) -> Result | None:
     """The result, or None when a stage failed."""
-    try:
-        return work(*given)
-    except Cancelled:
-        raise
-    except Exception as error:  # whatever goes wrong, the room counts as failed
-        log.warning("a room failed: %s", error)
-        return None
+    return attempt_one("a room", work, *given)[0]
 
 
 def _arrange(
@@ -228,24 +193,20 @@ def _arrange(
     progress: Progress,
 ) -> Mapping[str, Scene]:
     """Every row of the optimiser's ablation for one room; the arranged scenes by row."""
-    rows: list[tuple[str, LayoutStage, Scene | None]] = [("none", AsObserved(), observed)]
-    rows += [
-        (name, PaperRecipe(library, stages=k), observed)
-        for k, name in enumerate(("O", "O, P", "O, P, S", PAPER_LAYOUT), start=1)
-    ]
     feasible = layout_recipe("feasible", library)
-    rows += [
+    graph = None if observed is None else with_true_graph(view, observed)
+    room = None if observed is None else with_true_architecture(view, observed)
+    stages = (PaperRecipe(library, stages=k) for k in range(1, 5))
+    rows: list[tuple[str, LayoutStage, Scene | None]] = [
+        ("none", AsObserved(), observed),
+        *((name, stage, observed) for name, stage in zip(("O", "O, P", "O, P, S", PAPER_LAYOUT), stages, strict=True)),
         ("all-in-one", AllInOneRecipe(library), observed),
         ("feasible", feasible, observed),
+        ("true graph", PaperRecipe(library), graph),
+        ("true architecture", PaperRecipe(library), room),
+        ("feasible, true graph", feasible, graph),
+        ("feasible, true architecture", feasible, room),
     ]
-    if observed is not None:
-        graph, room = with_true_graph(view, observed), with_true_architecture(view, observed)
-        for name, stage in (("", PaperRecipe(library)), ("feasible, ", feasible)):
-            rows += [(f"{name}true graph", stage, graph), (f"{name}true architecture", stage, room)]
-    else:
-        rows += [
-            (f"{name}true {what}", feasible, None) for name in ("", "feasible, ") for what in ("graph", "architecture")
-        ]
     scenes: dict[str, Scene] = {}
     for name, stage, scene in rows:
         progress.report(0.3, f"layout: {name}")
@@ -258,9 +219,8 @@ def _arrange(
 
 def with_true_graph(view: TruthView, scene: Scene) -> Scene:
     """The prediction with the true support edges among the objects that were found; planes by role and nearness."""
-    scene = align_to_truth(scene, view)
-    truth = [view.scene.objects[k] for k in view.indices]
-    names = {t.id: m.id for t, m in zip(truth, match_all(truth, scene)) if m is not None}
+    matched = Matched.of(view, scene)
+    scene, names = matched.scene, {true: item.id for true, item in matched.counterparts.items()}
     edges = []
     for edge in true_supports(view):
         if edge.child in names:
@@ -305,26 +265,16 @@ def with_true_architecture(view: TruthView, scene: Scene) -> Scene:
 
 
 def _count_groups(
-    view: TruthView, scene: Scene | None, library: ShapeLibrary, groups: dict[str, list[tuple[float, ...]]]
+    view: TruthView, scene: Scene | None, library: ShapeLibrary, groups: dict[str, list[ObjectShares]]
 ) -> None:
-    truth = [view.scene.objects[k] for k in view.indices]
-    match = [None] * len(truth) if scene is None else match_all(truth, align_to_truth(scene, view))
-    true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
-    placed = [None if m is None else as_placed(m) for m in match]
+    true, placed = Matched.of(view, Scene() if scene is None else scene).poses(library)
     checks = pair_checks(true, placed)
-    others = max(len(truth) - 1, 1)
+    grids, others = (checks.rotation, checks.translation, checks.scale, checks.all_three), max(len(true) - 1, 1)
     for row, index in enumerate(view.indices):
-        grids = (checks.rotation[row], checks.translation[row], checks.scale[row])
-        every = grids[0] & grids[1] & grids[2]
-        shares = [(float(g.sum()) - 1) / others for g in (*grids, every)]
+        shares = [(float(g[row].sum()) - 1) / others for g in grids]
         accuracy = object_alignment([true[row]], [placed[row]]).acc
         item = view.scene.objects[index]
         name = CATEGORY_NAMES.get(item.category, item.category)
         name = name if name in paper.CATEGORIES else "others"
         for group in (*object_groups(view, index), f"category: {name}"):
             groups.setdefault(group, []).append((*shares, accuracy))
-
-
-def _counts(rows: Sequence[tuple[float, ...]]) -> GroupCounts:
-    r, t, s, every, object_acc = (float(x) for x in np.mean(rows, axis=0))
-    return GroupCounts(len(rows), r, t, s, every, object_acc)

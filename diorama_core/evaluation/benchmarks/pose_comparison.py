@@ -21,8 +21,8 @@ from diorama_core.artefacts import (
     PosedCandidates,
     RankedShapes,
 )
-from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, scene_alignment
-from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, match_all, relation_accuracy, structure_of
+from diorama_core.evaluation.metrics.pose import Alignment, nothing_right, object_alignment, scene_alignment
+from diorama_core.evaluation.metrics.scene import Matched, relation_accuracy, structure_of
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.runner import Runner
@@ -79,30 +79,23 @@ class PoseScores:
     @classmethod
     def failure(cls, asked: int) -> PoseScores:
         """The prediction failed."""
-        pairs, every, per_object = (
-            Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
-            for reading in ("mean over pairs", "against every other object", "object-focus")
-        )
-        return cls(asked, pairs, every, per_object, 0.0, 0.0, 0.0, 0.0, None)
+        return cls(asked, *nothing_right(asked), 0.0, 0.0, 0.0, 0.0, None)
 
 
 def pose_scores(view: TruthView, scene: Scene | None, library: ShapeLibrary) -> PoseScores:
     """Alignment, relations and overlap of a predicted scene; everything wrong where there is none."""
     if scene is None:
         return PoseScores.failure(len(view.indices))
-    scene = align_to_truth(scene, view)
-    truth = [view.scene.objects[k] for k in view.indices]
-    match = match_all(truth, scene)
-    placed = [None if m is None else as_placed(m) for m in match]
-    true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
+    matched = Matched.of(view, scene)
+    true, placed = matched.poses(library)
     pairs, every = scene_alignment(true, placed)
-    layout = structure_of(scene, library)
+    layout = structure_of(matched.scene, library)
     return PoseScores(
-        asked=len(truth),
+        asked=len(true),
         pairs=pairs,
         every=every,
         own=object_alignment(true, placed),
-        relation=relation_accuracy(view, scene, match),
+        relation=relation_accuracy(view, matched),
         orientation=layout["orientation"],
         placement=layout["placement"],
         structure=layout["structure"],

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -13,7 +15,7 @@ from jaxtyping import Float
 from diorama_core.artefacts import Box, Inputs, LabelledBox, Photo
 from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import AnnotatedPhoto, picture_of, read_annotations
-from diorama_core.evaluation.reports.tables import Column, Row, Table
+from diorama_core.evaluation.reports.tables import Column, Figure, Table, figures_table, mean
 from diorama_core.library.taxonomy import broad
 from diorama_core.models.boxes import overlaps
 from diorama_core.perception.inputs import read_inputs
@@ -74,6 +76,42 @@ class ClickedBoxes:
     seconds: float
 
 
+def _share(part: str, whole: str) -> Callable[[Sequence[Any]], float]:
+    """A share of sums over photos."""
+    return lambda photos: sum(getattr(p, part) for p in photos) / max(sum(getattr(p, whole) for p in photos), 1)
+
+
+def _hits(words: str) -> Iterator[Figure]:
+    """Objects that are met at each of `LEVELS`."""
+
+    def share(k: int, photos: Sequence[FoundBoxes | ClickedBoxes]) -> float:
+        return sum(p.hits[k] for p in photos) / max(sum(p.objects for p in photos), 1)
+
+    return (Figure(Column(f"{words} at IoU {x}", ".3f", "↑"), partial(share, k)) for k, x in enumerate(LEVELS))
+
+
+_OBJECTS = Figure(Column("objects", "d"), lambda photos: sum(p.objects for p in photos))
+_SECONDS = Figure(Column("seconds a photo", ".2f", "↓"), lambda photos: mean(p.seconds for p in photos))
+FOUND = (
+    _OBJECTS,
+    *_hits("found"),
+    Figure(Column("boxes a photo", ".1f"), lambda photos: mean(p.boxes for p in photos)),
+    Figure(Column("precision", ".3f", "↑"), _share("right", "boxes")),
+    Figure(Column("kind right", ".3f", "↑"), _share("named", "right")),
+    _SECONDS,
+)
+NAMED = (
+    _OBJECTS,
+    Figure(Column("first", ".3f", "↑"), _share("first", "objects")),
+    Figure(Column("among five", ".3f", "↑"), _share("among_five", "objects")),
+)
+CLICKED = (_OBJECTS, *_hits("right"), Figure(Column("no box", ".3f", "↓"), _share("none", "objects")), _SECONDS)
+
+
+def _table(title: str, photos_by_way: Mapping[str, Mapping[str, object]], figures: Sequence[Figure]) -> Table:
+    return figures_table(title, ((way, tuple(photos.values())) for way, photos in photos_by_way.items()), figures)
+
+
 @dataclass(frozen=True)
 class RecognitionBench:
     """Results of all routes, by photo."""
@@ -84,41 +122,11 @@ class RecognitionBench:
 
     def tables(self) -> tuple[Table, ...]:
         """Routes to boxes, and ways to name given boxes."""
-        columns = (
-            Column("objects", "d"),
-            *(Column(f"found at IoU {level}", ".3f", "↑") for level in LEVELS),
-            Column("boxes a photo", ".1f"),
-            Column("precision", ".3f", "↑"),
-            Column("kind right", ".3f", "↑"),
-            Column("seconds a photo", ".2f", "↓"),
-        )
-        rows = [Row(name, _values(tuple(photos.values()))) for name, photos in self.found.items()]
-        names = (Column("objects", "d"), Column("first", ".3f", "↑"), Column("among five", ".3f", "↑"))
-        named = [
-            Row(name, (sum(p.objects for p in ps.values()), *_shares(tuple(ps.values()))))
-            for name, ps in self.named.items()
-        ]
         return (
-            Table(f"Objects found in photos alone, {BEST} best boxes", columns, tuple(rows)),
-            Table("Names of boxes that a person drew", names, tuple(named)),
-            self._clicks(),
+            _table(f"Objects found in photos alone, {BEST} best boxes", self.found, FOUND),
+            _table("Names of boxes that a person drew", self.named, NAMED),
+            _table("Boxes of objects that a person clicked once", self.clicked, CLICKED),
         )
-
-    def _clicks(self) -> Table:
-        columns = (
-            Column("objects", "d"),
-            *(Column(f"right at IoU {level}", ".3f", "↑") for level in LEVELS),
-            Column("no box", ".3f", "↓"),
-            Column("seconds a photo", ".2f", "↓"),
-        )
-        rows = []
-        for name, by_photo in self.clicked.items():
-            photos = tuple(by_photo.values())
-            objects = max(sum(p.objects for p in photos), 1)
-            hits = (sum(p.hits[k] for p in photos) / objects for k in range(len(LEVELS)))
-            none = sum(p.none for p in photos) / objects
-            rows.append(Row(name, (objects, *hits, none, sum(p.seconds for p in photos) / max(len(photos), 1))))
-        return Table("Boxes of objects that a person clicked once", columns, tuple(rows))
 
     def to_json(self) -> dict[str, object]:
         """Tables and every photo."""
@@ -225,21 +233,3 @@ def _click(
     ]
     hits = tuple(sum(share >= level for share in right) for level in LEVELS)
     return ClickedBoxes(len(boxes), hits, sum(box is None for box in meant), seconds)
-
-
-def _values(photos: Sequence[FoundBoxes]) -> tuple[float | int, ...]:
-    objects, boxes = sum(p.objects for p in photos), sum(p.boxes for p in photos)
-    right = sum(p.right for p in photos)
-    return (
-        objects,
-        *(sum(p.hits[k] for p in photos) / max(objects, 1) for k in range(len(LEVELS))),
-        boxes / max(len(photos), 1),
-        right / max(boxes, 1),
-        sum(p.named for p in photos) / max(right, 1),
-        sum(p.seconds for p in photos) / max(len(photos), 1),
-    )
-
-
-def _shares(photos: Sequence[NamedBoxes]) -> tuple[float, float]:
-    count = max(sum(p.objects for p in photos), 1)
-    return sum(p.first for p in photos) / count, sum(p.among_five for p in photos) / count

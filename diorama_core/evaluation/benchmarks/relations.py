@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from diorama_core.artefacts import (
     Inputs,
     ObjectGeometry,
     Photo,
-    SceneGraph,
 )
 from diorama_core.evaluation.benchmarks.cases import LeftOut, make_views, recipe
 from diorama_core.evaluation.reports import paper
@@ -32,7 +31,6 @@ from diorama_core.perception.masks import EmbeddedMasks
 from diorama_core.perception.measured import MeasuredGeometry
 from diorama_core.perception.metrology import SingleViewMetrology
 from diorama_core.progress import SILENT, Progress
-from diorama_core.protocols import GraphStage
 from diorama_core.provenance import CameraSource
 from diorama_core.scene.types import Scene, Support
 from diorama_core.synthesis import TruthView
@@ -56,13 +54,10 @@ class RelationCount:
         return self.right / self.total if self.total else 1.0
 
 
-def judge(supports: tuple[Support, ...], names: dict[str, str], truth: Scene) -> RelationCount:
-    """Edges beside the truth's; only objects whose true supporter is itself visible, or a part of the room, count.
+def _judge(supports: tuple[Support, ...], names: dict[str, str], truth: Scene) -> RelationCount:
+    """Edges beside the truth's, whose objects `names` has by their ids in the photo.
 
-    Args:
-        supports: of objects by their ids in the photo, or "floor", "wall" and "ceiling".
-        names: the truth's object id by id in the photo.
-        truth: the room.
+    Only objects whose true supporter is itself visible, or a part of the room, count.
     """
     roles: dict[str, str] = {p.id: p.role for p in truth.architecture.planes}
     visible = set(names.values())
@@ -83,11 +78,15 @@ def judge(supports: tuple[Support, ...], names: dict[str, str], truth: Scene) ->
     return RelationCount(right, total, tuple(mistakes))
 
 
-def relations_of(view: TruthView, *, with_depth: bool, graph: GraphStage | None = None) -> RelationCount:
-    """The supports of one picture, from masks and classes with depth or without, by geometry unless a graph stage is
-    given; the camera's orientation is known.
+Reader = Callable[[Inputs, tuple[DetectedObject, ...], ObjectGeometry], tuple[Support, ...]]
+"""Tells the supports of what was found in a picture."""
+
+
+def relations_of(view: TruthView, *, with_depth: bool, reader: Reader | None = None) -> RelationCount:
+    """The supports of one picture, from masks and classes with depth or without, by geometry unless a reader is given;
+    the camera's orientation is known.
     """
-    inputs = view.inputs if with_depth else _without_depth(view.inputs)
+    inputs = view.inputs if with_depth else replace(view.inputs, depth_m=None)
     camera = view.camera
     reading = CameraHypothesis(camera.intrinsics, camera.T_world_camera[:3, :3], 1.0)
     height = float(camera.position[2]) if with_depth else None
@@ -96,13 +95,9 @@ def relations_of(view: TruthView, *, with_depth: bool, graph: GraphStage | None 
     objects = EmbeddedMasks().segment(inputs, quiet)
     stage = MeasuredGeometry() if with_depth else SingleViewMetrology()
     geometry = stage.measure(inputs, estimate, objects, quiet)
-    supports = geometry.supports if graph is None else graph.relate(inputs, objects, geometry, quiet).supports
+    supports = geometry.supports if reader is None else reader(inputs, objects, geometry)
     by_mask = {o.mask_id: o.id for o in view.scene.objects if o.mask_id is not None}
-    return judge(supports, {o.id: by_mask[o.mask_id] for o in objects}, view.scene)
-
-
-def _without_depth(inputs: Inputs) -> Inputs:
-    return replace(inputs, depth_m=None)
+    return _judge(supports, {o.id: by_mask[o.mask_id] for o in objects}, view.scene)
 
 
 WITH_DEPTH, PHOTO_ALONE = "masks and depth", "masks and the photo alone"
@@ -155,29 +150,19 @@ class RelationsBench:
         return {"seed": self.seed, "rooms": self.rooms, "tables": [t.to_json() for t in self.tables()]}
 
 
-@dataclass
-class MeteredGraph:
-    """A language model's graph stage that notes what every picture took. Implements `GraphStage`."""
+def _meter(settings: LmmSettings, asked: list[AskedSupport]) -> Reader:
+    """Asks a language model for the supports, and notes what that took."""
 
-    stage: LanguageGraph
-    asked: list[AskedSupport] = field(default_factory=list)
-
-    def relate(
-        self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
-    ) -> SceneGraph:
-        """The stage's graph.
-
-        Args:
-            inputs, objects, geometry, progress: as documented in `protocols.GraphStage`.
-        """
+    def supports(inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry) -> tuple[Support, ...]:
         began = time.perf_counter()
-        graph = self.stage.relate(inputs, objects, geometry, progress)
+        graph = LanguageGraph(settings).relate(inputs, objects, geometry, Progress())
         if (use := graph.source.asked) is not None:
-            seconds = time.perf_counter() - began
-            self.asked.append(
-                AskedSupport(WHAT_HOLDS_WHAT, use.calls, use.tokens, seconds, use.cost, use.calls - use.replies)
-            )
-        return graph
+            took = time.perf_counter() - began
+            unusable = use.calls - use.replies
+            asked.append(AskedSupport(WHAT_HOLDS_WHAT, use.calls, use.tokens, took, use.cost, unusable))
+        return graph.supports
+
+    return supports
 
 
 def run(
@@ -210,8 +195,7 @@ def run(
         counts[PHOTO_ALONE] += relations_of(view, with_depth=False)
         if settings is not None:
             asked.append(_recognise(view.inputs.photo, settings))
-            metered = MeteredGraph(LanguageGraph(settings), asked)
-            result = relations_of(view, with_depth=True, graph=metered)
+            result = relations_of(view, with_depth=True, reader=_meter(settings, asked))
             counts[BY_MODEL] = counts.get(BY_MODEL, RelationCount()) + result
     model = "" if settings is None else settings.model
     return RelationsBench(seed, scenes - len(left_out), tuple(counts.items()), model, tuple(asked))

@@ -8,16 +8,14 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from functools import partial
-
-import numpy as np
 
 from diorama_core.errors import DioramaError
 from diorama_core.evaluation.benchmarks.cases import make_views, recipe
 from diorama_core.evaluation.metrics.shape import is_household, shape_distance
 from diorama_core.evaluation.reports import paper
-from diorama_core.evaluation.reports.tables import Column, Row, Table, paper_rows
+from diorama_core.evaluation.reports.tables import Column, Row, Table, mean, paper_rows
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.search import find
 from diorama_core.library.taxonomy import broad
@@ -41,6 +39,10 @@ MISSED = 100.0
 ALONE = ("words alone", "looks alone")
 """Half of the query each, as the paper's DD-T and DD-V have them; hand-made stand-ins for the network's two towers."""
 GROUPS = ("household", "furniture", "occluded", "complete", "supported", "supporting")
+
+
+Ranked = Mapping[str, tuple[str, ...]]
+"""Shapes for each object, the best first."""
 
 
 @dataclass(frozen=True)
@@ -115,14 +117,7 @@ def run(
         progress.report(k / len(cases), case.name)
         same, unseen = _ranks(everything, view), _ranks(others, view)
         alone = [(name, whole(view), others_only(view)) for name, (whole, others_only) in rows.items()]
-        for index in view.indices:
-            result = _result(case.name, view, index, same, unseen, library)
-            object_id = view.scene.objects[index].id
-            shapes = [(name, a.get(object_id, ()), b.get(object_id, ())) for name, a, b in alone]
-            best = tuple(
-                (name, _nearest(view, index, a, library), _nearest(view, index, b, library)) for name, a, b in shapes
-            )
-            results.append(replace(result, alone=best))
+        results += [_result(case.name, view, index, same, unseen, alone, library) for index in view.indices]
     return RetrievalBench(seed, tuple(results))
 
 
@@ -141,7 +136,7 @@ def embedding_stages(embeddings: Mapping[str, JointEmbedding]) -> dict[str, Call
     }
 
 
-def _ranks(stage: RetrievalStage, view: TruthView) -> dict[str, tuple[str, ...]]:
+def _ranks(stage: RetrievalStage, view: TruthView) -> Ranked:
     try:
         ranked = stage.retrieve(view.inputs, true_objects(view), true_geometry(view), Progress())
     except DioramaError as error:
@@ -150,49 +145,49 @@ def _ranks(stage: RetrievalStage, view: TruthView) -> dict[str, tuple[str, ...]]
     return {r.object_id: tuple(shape for shape, _ in r.ranked) for r in ranked}
 
 
-def _alone(name: str, library: ShapeLibrary, view: TruthView) -> dict[str, tuple[str, ...]]:
+def _alone(name: str, library: ShapeLibrary, view: TruthView) -> Ranked:
     """Ranked shapes of every object by its label's words, or by what its kind's shapes look like."""
     if name == "words alone":
         return {o.id: tuple(s.id for s in find(library, o.label, k=CACHE_SIZE).shapes) for o in true_objects(view)}
     return _ranks(MatchedByLooks(library), view)
 
 
-def _nearest(view: TruthView, index: int, ranked: Sequence[str], library: ShapeLibrary) -> float:
-    """Chamfer distance of the best of five to the true shape."""
-    true = view.scene.objects[index].shape_id
-    return min((shape_distance(library, true, s) for s in ranked[:CACHE_SIZE]), default=MISSED)
+def _distances(true: str, ranked: Sequence[str], library: ShapeLibrary) -> tuple[float, float]:
+    """Chamfer distance of the first and of the best of five to the true shape."""
+    near = [shape_distance(library, true, s) for s in ranked[:CACHE_SIZE]]
+    return (near[0], min(near)) if near else (MISSED, MISSED)
 
 
 def _result(
     case: str,
     view: TruthView,
     index: int,
-    same: dict[str, tuple[str, ...]],
-    unseen: dict[str, tuple[str, ...]],
+    same: Ranked,
+    unseen: Ranked,
+    alone: Sequence[tuple[str, Ranked, Ranked]],
     library: ShapeLibrary,
 ) -> RetrievalResult:
     item = view.scene.objects[index]
 
-    def distances(ranked: tuple[str, ...]) -> tuple[float, float]:
-        near = [shape_distance(library, item.shape_id, s) for s in ranked[:CACHE_SIZE]]
-        return (near[0], min(near)) if near else (MISSED, MISSED)
+    def distances(found: Ranked) -> tuple[float, float]:
+        return _distances(item.shape_id, found.get(item.id, ()), library)
 
-    def right_kind(ranked: tuple[str, ...]) -> bool:
-        return bool(ranked) and broad(library.shape(ranked[0]).category) == broad(item.category)
+    def right_kind(found: Ranked) -> bool:
+        first = found.get(item.id, ())[:1]
+        return any(broad(library.shape(s).category) == broad(item.category) for s in first)
 
-    ranked, others = same.get(item.id, ()), unseen.get(item.id, ())
-    rank = ranked.index(item.shape_id) + 1 if item.shape_id in ranked else None
-    groups = object_groups(view, index)
+    ranked = same.get(item.id, ())
     return RetrievalResult(
         case,
         item.id,
         item.category,
-        groups,
-        *distances(ranked),
-        *distances(others),
-        rank,
-        right_kind(ranked),
-        right_kind(others),
+        object_groups(view, index),
+        *distances(same),
+        *distances(unseen),
+        ranked.index(item.shape_id) + 1 if item.shape_id in ranked else None,
+        right_kind(same),
+        right_kind(unseen),
+        tuple((name, distances(whole)[1], distances(others)[1]) for name, whole, others in alone),
     )
 
 
@@ -213,25 +208,17 @@ def retrieval_table(objects: Sequence[RetrievalResult]) -> Table:
     """Chamfer distance by group, same source and out of distribution (paper, table 4)."""
     columns = tuple(Column(f"{g} {s}", ".1f", "↓") for g in GROUPS for s in ("SS", "OOD"))
 
-    def row(name: str, same: str, unseen: str) -> Row:
-        values = []
-        for group in GROUPS:
-            inside = [o for o in objects if group in o.groups]
-            values += [_mean([getattr(o, same) for o in inside]), _mean([getattr(o, unseen) for o in inside])]
-        return Row(name, tuple(values))
-
-    def alone(name: str) -> Row:
-        values: list[float | None] = []
-        for group in GROUPS:
-            inside = [pair for o in objects if group in o.groups for n, *pair in o.alone if n == name]
-            values += [_mean([same for same, _ in inside]), _mean([unseen for _, unseen in inside])]
-        return Row(f"{name}, best of 5", tuple(values))
-
-    rows = (
-        row("embedded, first", "same_first", "unseen_first"),
-        row("embedded, best of 5", "same_best", "unseen_best"),
-        *(alone(name) for name in dict.fromkeys(n for o in objects for n, *_ in o.alone)),
-    )
+    by_row: dict[str, list[tuple[RetrievalResult, tuple[float, float]]]] = {
+        "embedded, first": [(o, (o.same_first, o.unseen_first)) for o in objects],
+        "embedded, best of 5": [(o, (o.same_best, o.unseen_best)) for o in objects],
+    }
+    for o in objects:
+        for name, same, unseen in o.alone:
+            by_row.setdefault(f"{name}, best of 5", []).append((o, (same, unseen)))
+    rows = [
+        Row(name, tuple(mean(x[k] for o, x in found if group in o.groups) for group in GROUPS for k in (0, 1)))
+        for name, found in by_row.items()
+    ]
     note = (
         f"{len(objects)} objects. Two-way mean squared chamfer of normalised shapes x 1000. SS: the true shape "
         "is in the library; OOD: it is not. Words alone: a text search for the label; looks alone: rendered views of "
@@ -251,11 +238,7 @@ def recall_table(objects: Sequence[RetrievalResult]) -> Table:
     for group in ("all", *GROUPS):
         inside = [o for o in objects if group == "all" or group in o.groups]
         ranks = [o.rank for o in inside]
-        shares = [_mean([float(r is not None and r <= most) for r in ranks]) for most in (1, CACHE_SIZE, 8)]
-        kinds = [_mean([float(o.same_kind) for o in inside]), _mean([float(o.unseen_kind) for o in inside])]
+        shares = [mean(r is not None and r <= most for r in ranks) for most in (1, CACHE_SIZE, 8)]
+        kinds = [mean(o.same_kind for o in inside), mean(o.unseen_kind for o in inside)]
         rows.append(Row(group, (len(inside), *shares, *kinds)))
     return Table("The very shape found", columns, tuple(rows))
-
-
-def _mean(values: Sequence[float]) -> float | None:
-    return float(np.mean(values)) if values else None

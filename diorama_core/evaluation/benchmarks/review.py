@@ -23,7 +23,7 @@ from diorama_core.pipeline.run import build_scene
 from diorama_core.progress import SILENT, Progress
 from diorama_core.review.answers import apply_answer
 from diorama_core.review.questions import TURNS, YES, Question, Subject, questions
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import PlaneRole, Scene
 
 COUNTS = (0, 1, 3, 5, 10)
 """Answers after which scenes are compared with the truth."""
@@ -126,8 +126,13 @@ class Reviewed:
         on = self.truth[question.object_id].on
         if isinstance(on, int):
             return next((name for name, index in self.index_of.items() if index == on and scene.has_object(name)), None)
-        planes = [p.id for p in scene.architecture.planes if p.role == on]
-        return next((c.value for c in question.choices if c.value in planes), next(iter(planes), None))
+        return None if on is None else likeliest_plane(scene, question, on)
+
+
+def likeliest_plane(scene: Scene, question: Question, role: PlaneRole) -> str | None:
+    """The plane of a role that a question names first; else any with that role."""
+    planes = [p.id for p in scene.architecture.by_role(role)]
+    return next((c.value for c in question.choices if c.value in planes), next(iter(planes), None))
 
 
 def build(task: PhotoTask, library: ShapeLibrary, progress: Progress = SILENT) -> Reviewed:
@@ -157,12 +162,7 @@ def run(tasks: Sequence[PhotoTask], library: ShapeLibrary, progress: Progress = 
 
 
 def answers_table(scenes: Sequence[KnownScene], what: str = RIGHT_IN_ALL) -> Table:
-    """What answers are worth in each order.
-
-    Args:
-        scenes: reviewed.
-        what: is counted.
-    """
+    """What answers are worth in each order, and what is counted."""
     rng = np.random.default_rng(0)
     orders: dict[str, tuple[int, Order]] = {
         "the review": (1, lambda asked: asked[0]),

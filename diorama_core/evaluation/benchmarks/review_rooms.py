@@ -10,11 +10,11 @@ import numpy as np
 from diorama_core.artefacts import Inputs
 from diorama_core.errors import EditRefused
 from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, attempt, recipe
-from diorama_core.evaluation.benchmarks.review import RIGHT_DEG, answers_table
+from diorama_core.evaluation.benchmarks.review import RIGHT_DEG, answers_table, likeliest_plane
 from diorama_core.evaluation.benchmarks.system import without_names
 from diorama_core.evaluation.benchmarks.views import photograph
 from diorama_core.evaluation.metrics.pose import object_alignment, rotation_angle, symmetry_turns
-from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, match_all
+from diorama_core.evaluation.metrics.scene import Matched, align_to_truth
 from diorama_core.evaluation.reports.tables import Table
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.pipeline.run import build_scene
@@ -70,10 +70,7 @@ class KnownRoom:
 
     def score(self, scene: Scene) -> tuple[float, int]:
         """How many of the objects that the photo shows are where, as large and turned as in the room."""
-        items = [self.view.scene.objects[k] for k in self.view.indices]
-        true = [as_placed(t, self.all_shapes.shape(t.shape_id).symmetry) for t in items]
-        placed = [None if m is None else as_placed(m) for m in match_all(items, align_to_truth(scene, self.view))]
-        alignment = object_alignment(true, placed)
+        alignment = object_alignment(*Matched.of(self.view, scene).poses(self.all_shapes))
         return alignment.acc * alignment.count, alignment.count
 
     def answer(self, scene: Scene, question: Question) -> str | None:
@@ -107,9 +104,7 @@ class KnownRoom:
             return None
         if not self.view.scene.has_plane(edge.parent):
             return next((name for name, item in self.truth.items() if item.id == edge.parent), None)
-        role = self.view.scene.plane(edge.parent).role
-        planes = [p.id for p in scene.architecture.by_role(role)]
-        return next((c.value for c in question.choices if c.value in planes), next(iter(planes), None))
+        return likeliest_plane(scene, question, self.view.scene.plane(edge.parent).role)
 
 
 def run(
@@ -128,8 +123,7 @@ def run(
         Cancelled: on request.
     """
     tested, searched = split_library(library, "test"), split_library(library, "train", "validation")
-    left_out: list[LeftOut] = []
-    cases = recipe(scenes, 1, seed)
+    cases, left_out = recipe(scenes, 1, seed), list[LeftOut]()
 
     def view_of(case: Case) -> TruthView:
         progress.report(cases.index(case) / len(cases), f"reviewing {case.name}")
@@ -139,9 +133,7 @@ def run(
     for _, view in attempt(cases, view_of, left_out):
         given: Inputs = photo_only(view) if named else without_names(view)
         scene = build_scene(given, searched, stages=embedded_stages(given, searched)).scene
-        items = [view.scene.objects[k] for k in view.indices]
-        pairs = zip(items, match_all(items, align_to_truth(scene, view)), strict=True)
-        truth = {match.id: true for true, match in pairs if match is not None}
+        truth = {item.id: view.scene.object(name) for name, item in Matched.of(view, scene).counterparts.items()}
         rooms.append(KnownRoom(scene, view, truth, searched, library))
     progress.report(1.0, "done")
     return RoomReview(named, tuple(rooms), tuple(left_out))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
@@ -10,6 +11,7 @@ import numpy as np
 from jaxtyping import UInt8
 
 from diorama_core.evaluation.benchmarks.cases import MIN_ASKED, Case, recipe, studio_of
+from diorama_core.evaluation.benchmarks.photo_build import grid
 from diorama_core.evaluation.reports.tables import Column, Row, Table
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import SILENT, Progress
@@ -92,7 +94,7 @@ def rooms_table(rooms: Sequence[RoomSurvey]) -> Table:
             len(rooms),
             f"{min(objects)} to {max(objects)}, mean {np.mean(objects):.0f}" if objects else "",
             count([r.depth for r in rooms]),
-            ", ".join(f"{o}: {n}" for o, n in _tally([r.outline for r in rooms])),
+            ", ".join(f"{o}: {n}" for o, n in sorted(Counter(r.outline for r in rooms).items())),
             sum(len(r.collisions) for r in rooms),
             sum(len(r.outside) for r in rooms),
         ),
@@ -129,15 +131,8 @@ def sheet(pictures: Sequence[UInt8[np.ndarray, "_ _ 3"]], names: Sequence[str]) 
         for colour, width in (((0, 0, 0), 3), ((255, 255, 255), 1)):
             cv2.putText(copy, name, (5, 14), cv2.FONT_HERSHEY_SIMPLEX, 0.42, colour, width, cv2.LINE_AA)
         labelled.append(copy)
-    blank = np.full_like(labelled[0], 255)
-    labelled += [blank] * (-len(labelled) % SHEET_COLUMNS)
-    rows = [np.concatenate(labelled[k : k + SHEET_COLUMNS], axis=1) for k in range(0, len(labelled), SHEET_COLUMNS)]
-    return np.concatenate(rows)
+    return grid(labelled, SHEET_COLUMNS)
 
 
 def _spread(values: Sequence[float], form: str) -> str:
     return " / ".join(form.format(v) for v in (min(values), float(np.median(values)), max(values))) if values else ""
-
-
-def _tally(names: Sequence[str]) -> list[tuple[str, int]]:
-    return [(n, names.count(n)) for n in sorted(set(names))]

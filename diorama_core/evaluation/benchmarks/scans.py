@@ -20,7 +20,6 @@ from diorama_core.evaluation.reports.tables import Column, Row, Table, bootstrap
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.importing.measured_cloud import measure_cloud
 from diorama_core.importing.measured_room import open_room
-from diorama_core.importing.measured_types import MeasuredRoom
 from diorama_core.importing.point_files import read_points
 from diorama_core.importing.scanned_kinds import with_scanned_kinds
 from diorama_core.library.record import ShapeLibrary
@@ -91,7 +90,7 @@ class ScansBench:
             f"and windows within {MAX_OFF_M} m. Time: processor seconds a room, reading included."
         )
         if self.left_out:
-            note += " Left out: " + "; ".join(f"{r.case} ({r.reason})" for r in self.left_out) + "."
+            note += f" Left out: {'; '.join(map(str, self.left_out))}."
         return (Table("Rooms from scans", columns, tuple(rows), note),)
 
     def to_json(self) -> dict[str, object]:
@@ -145,16 +144,11 @@ def open_all_ways(name: str, truth: Scene, scan: Path, library: ShapeLibrary) ->
     results = []
     for way in WAYS:
         begun = time.process_time()
-        scene = open_room(_with_kinds(measured, way, library), library).scene
+        room = measured if way == WAYS[0] else with_scanned_kinds(measured, library, look=way == WAYS[2])
+        scene = open_room(room, library).scene
         seconds = reading + time.process_time() - begun
         results.append(score(name, way, truth, scene, seconds))
     return tuple(results)
-
-
-def _with_kinds(measured: MeasuredRoom, way: str, library: ShapeLibrary) -> MeasuredRoom:
-    if way == WAYS[0]:
-        return measured
-    return with_scanned_kinds(measured, library, look=way == WAYS[2])
 
 
 def score(name: str, way: str, truth: Scene, scene: Scene, seconds: float) -> ScanResult:
@@ -167,10 +161,9 @@ def score(name: str, way: str, truth: Scene, scene: Scene, seconds: float) -> Sc
         scene: as it was opened.
         seconds: that it took.
     """
-    turned = [[_rotate(o, yaw_rotation(k * np.pi / 2)) for o in scene.objects] for k in range(4)]
     asked = [o for o in truth.objects if _is_asked(o)]
-    pairs = max((_pairs(asked, objects) for objects in turned), key=len)
-    best = max(turned, key=lambda objects: len(_pairs(asked, objects)))
+    turned = ([_rotate(o, yaw_rotation(k * np.pi / 2)) for o in scene.objects] for k in range(4))
+    pairs, best = max(((_pairs(asked, objects), objects) for objects in turned), key=lambda row: len(row[0]))
     right = sum(broad(a.category) == broad(b.category) for a, b in pairs)
     openings = [o for o in truth.objects if o.category in OPENING_CATEGORIES]
     cut = [o for o in best if o.category in OPENING_CATEGORIES]

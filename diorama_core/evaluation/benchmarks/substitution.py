@@ -69,11 +69,6 @@ def parse_substitutes(words: str) -> tuple[frozenset[str], ...]:
     return rows
 
 
-def with_true_masks(inputs: Inputs, view: TruthView) -> Inputs:
-    """The inputs with the true masks in place of their boxes."""
-    return replace(inputs, instances=view.inputs.instances, instance_boxes=view.inputs.instance_boxes)
-
-
 def substitute(stages: Stages, view: TruthView, given: frozenset[str], library: ShapeLibrary) -> Stages:
     """Stages whose results carry the truth where `given` says so ("masks" belongs to the inputs).
 

@@ -5,17 +5,17 @@ As in the paper, the shapes that stand in the rooms are not in the library that 
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from diorama_core.artefacts import Box, Inputs, LabelledBox
-from diorama_core.errors import Cancelled, InputError
-from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, make_views, recipe
-from diorama_core.evaluation.benchmarks.substitution import substitute, with_true_masks
+from diorama_core.artefacts import Inputs, LabelledBox
+from diorama_core.errors import InputError
+from diorama_core.evaluation.benchmarks.cases import Case, LeftOut, attempt_one, make_views, recipe
+from diorama_core.evaluation.benchmarks.photo_perturbations import jitter_box
+from diorama_core.evaluation.benchmarks.substitution import substitute
 from diorama_core.evaluation.benchmarks.system_tables import (
     CaseResult,
     scene_table,
@@ -35,8 +35,6 @@ from diorama_core.progress import SILENT, Progress
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.splits import split_library
 from diorama_core.synthesis.truth import TruthView
-
-log = logging.getLogger(__name__)
 
 TRUE_INPUTS = "true masks and depth"
 PHOTO_ALONE = "embedded perception"
@@ -90,17 +88,10 @@ def loosen_name(box: LabelledBox) -> LabelledBox:
 
 def jitter(view: TruthView) -> Inputs:
     """The picture with every edge of every box off by 4 % of the box (standard deviation), as detectors' are."""
-    given = photo_only(view)
+    given, k = photo_only(view), view.camera.intrinsics
     rng = np.random.default_rng(len(view.indices))
-    return replace(given, boxes=tuple(replace(b, box=_jitter(b.box, view, rng)) for b in given.boxes))
-
-
-def _jitter(box: Box, view: TruthView, rng: np.random.Generator) -> Box:
-    k = view.camera.intrinsics
-    extent = np.tile([box[2] - box[0], box[3] - box[1]], 2)
-    x1, y1, x2, y2 = np.array(box) + BOX_JITTER * extent * rng.standard_normal(4)
-    x1, y1 = min(max(x1, 0.0), k.width - 2.0), min(max(y1, 0.0), k.height - 2.0)
-    return float(x1), float(y1), float(min(max(x2, x1 + 2), k.width)), float(min(max(y2, y1 + 2), k.height))
+    moved = (replace(b, box=jitter_box(b.box, (k.width, k.height), BOX_JITTER, rng)) for b in given.boxes)
+    return replace(given, boxes=tuple(moved))
 
 
 def _acdc(inputs: Inputs, library: ShapeLibrary) -> Stages:
@@ -160,10 +151,8 @@ class SystemBench:
         if len(self.seeds) > 1:
             tables.append(series_table(plain))
         if self.left_out:
-            omissions = "; ".join(f"{r.case} ({r.reason})" for r in self.left_out)
-            tables[0] = replace(
-                tables[0], note=f"{tables[0].note} Left out because they could not be made: {omissions}."
-            )
+            omissions = f"Left out because they could not be made: {'; '.join(map(str, self.left_out))}."
+            tables[0] = replace(tables[0], note=f"{tables[0].note} {omissions}")
         return tuple(tables)
 
     def to_json(self) -> dict[str, object]:
@@ -252,28 +241,26 @@ def build_case(
         physics: whether it is dropped in a simulator.
     """
     begun, wall = time.process_time(), time.perf_counter()
-    try:
+
+    def score() -> tuple[Built, CaseResult]:
         inputs = way.inputs(view)
         if "masks" in way.truth:
-            inputs = with_true_masks(inputs, view)
-        stages = embedded_stages(inputs, searched)
-        if way.stages is not None:
-            stages = way.stages(inputs, searched)
+            inputs = replace(inputs, instances=view.inputs.instances, instance_boxes=view.inputs.instance_boxes)
+        stages = (way.stages or embedded_stages)(inputs, searched)
         if "shape" in way.truth:  # the true shapes are not among those searched
             everything = embedded_stages(inputs, library)
             stages = replace(stages, pose=everything.pose, layout=everything.layout, refinement=everything.refinement)
         known = library if "shape" in way.truth else searched
         stages = substitute(stages, view, way.truth, known)
-        built = build_scene(inputs, known, stages=stages, progress=Progress(token=progress.token))
+        made = build_scene(inputs, known, stages=stages, progress=Progress(token=progress.token))
         spent, waited = time.process_time() - begun, time.perf_counter() - wall
-        before = scene_scores(view, built.observed, library)
-        scores = scene_scores(view, built.scene, library, physics=physics)
-        failure = "" if built.scene.objects else "no object came out"
-        return built, CaseResult(case.name, scores, spent, waited, failure, before)
-    except Cancelled:
-        raise
-    except Exception as error:  # whatever goes wrong, the scene counts as failed
-        log.warning("%s failed: %s", case.name, error)
-        spent, waited = time.process_time() - begun, time.perf_counter() - wall
-        failed = SceneScores.failure(len(view.indices))
-        return None, CaseResult(case.name, failed, spent, waited, f"{type(error).__name__}: {error}")
+        before = scene_scores(view, made.observed, library)
+        scores = scene_scores(view, made.scene, library, physics=physics)
+        failure = "" if made.scene.objects else "no object came out"
+        return made, CaseResult(case.name, scores, spent, waited, failure, before)
+
+    result, failure = attempt_one(case.name, score)
+    if result is not None:
+        return result
+    spent, waited = time.process_time() - begun, time.perf_counter() - wall
+    return None, CaseResult(case.name, SceneScores.failure(len(view.indices)), spent, waited, failure)

@@ -10,7 +10,16 @@ import numpy as np
 from diorama_core.evaluation.metrics.pose import Alignment, pool
 from diorama_core.evaluation.metrics.scene import SceneScores
 from diorama_core.evaluation.reports import paper
-from diorama_core.evaluation.reports.tables import Column, Interval, Row, Table, Value, bootstrap_interval, paper_rows
+from diorama_core.evaluation.reports.tables import (
+    Column,
+    Interval,
+    Row,
+    Table,
+    Value,
+    bootstrap_interval,
+    mean,
+    paper_rows,
+)
 
 
 @dataclass(frozen=True)
@@ -52,21 +61,14 @@ def system_table(results: Results, *, offered: bool = False) -> Table:
     rows = []
     for name, cases in results:
         tail: tuple[Value, ...] = (
-            _mean([c.scores.shape_distance for c in cases]),
+            mean([c.scores.shape_distance for c in cases]),
             sum(bool(c.failure) for c in cases),
-            _mean([c.seconds for c in cases]),
+            mean([c.seconds for c in cases]),
         )
         for reading, key in _ALIGNED:
             alignments: list[Alignment] = [getattr(c.scores, key) for c in cases]
-            p = pool(alignments)
-            span = bootstrap_interval([a.acc for a in alignments], [a.count for a in alignments])
-            rows.append(
-                Row(
-                    f"{name}, {reading}",
-                    (p.r_acc, p.t_acc, p.s_acc, p.acc, *tail),
-                    intervals=(None, None, None, span, None, None, None),
-                )
-            )
+            spans = (None, None, None, _acc_interval(alignments), None, None, None)
+            rows.append(Row(f"{name}, {reading}", (*pool(alignments).shares, *tail), intervals=spans))
     note = (
         f"{len(results[0][1]) if results else 0} rooms; their own shapes are {'' if offered else 'not '}in the library "
         "searched. Scenes that fail count as wrong in every share. Rotations count up to the true shape's symmetry "
@@ -125,9 +127,9 @@ def _scene_row(name: str, scores: Sequence[SceneScores]) -> Row:
     }
     return Row(
         name,
-        (pool(alignments).acc, _median_off(scores), *(_mean([getattr(s, key) for s in scores]) for _, key in _SCENE)),
+        (pool(alignments).acc, _median_off(scores), *(mean(getattr(s, key) for s in scores) for _, key in _SCENE)),
         intervals=(
-            bootstrap_interval([a.acc for a in alignments], [a.count for a in alignments]),
+            _acc_interval(alignments),
             None,
             *(spans.get(key) for _, key in _SCENE),
         ),
@@ -145,19 +147,9 @@ def substitution_table(results: Results) -> Table:
     for name, cases in results:
         scores = ([c.before or SceneScores.failure(c.scores.asked) for c in cases], [c.scores for c in cases])
         alignments = [[s.own for s in part] for part in scores]
-        rows.append(
-            Row(
-                name,
-                (
-                    *(pool(o).acc for o in alignments),
-                    *(_mean([getattr(s, key) for s in part]) for key in ("chamfer_cm", "image_iou") for part in scores),
-                ),
-                intervals=(
-                    *(bootstrap_interval([a.acc for a in o], [a.count for a in o]) for o in alignments),
-                    *(None,) * 4,
-                ),
-            )
-        )
+        others = (mean(getattr(s, k) for s in part) for k in ("chamfer_cm", "image_iou") for part in scores)
+        spans = (*map(_acc_interval, alignments), *(None,) * 4)
+        rows.append(Row(name, (*(pool(o).acc for o in alignments), *others), intervals=spans))
     note = f"Before and after layout. {_INTERVALS}"
     return Table("The truth in place of one input", columns, tuple(rows), note)
 
@@ -171,16 +163,15 @@ def series_table(results: Results) -> Table:
         values: list[Value] = []
         for seed in seeds:
             part = [c.scores for c in cases if c.seed == seed]
-            values += [pool([s.own for s in part]).acc if part else None, _mean([s.chamfer_cm for s in part])]
+            values += [pool([s.own for s in part]).acc if part else None, mean([s.chamfer_cm for s in part])]
         rows.append(Row(name, tuple(values)))
     return Table("By series of rooms", columns, tuple(rows))
+
+
+def _acc_interval(alignments: Sequence[Alignment]) -> Interval | None:
+    return bootstrap_interval([a.acc for a in alignments], [a.count for a in alignments])
 
 
 def _median_off(scores: Sequence[SceneScores]) -> float | None:
     known = [abs(s.height_off) for s in scores if s.height_off is not None]
     return float(np.median(known)) if known else None
-
-
-def _mean(values: Sequence[float | None]) -> float | None:
-    known = [v for v in values if v is not None]
-    return float(np.mean(known)) if known else None

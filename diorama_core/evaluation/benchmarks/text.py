@@ -12,8 +12,9 @@ import cv2
 import numpy as np
 from jaxtyping import UInt8
 
+from diorama_core.evaluation.benchmarks.photo_build import grid
 from diorama_core.evaluation.metrics.text_scene import Asked, TextScene, measure
-from diorama_core.evaluation.reports.tables import Column, Row, Table
+from diorama_core.evaluation.reports.tables import Column, Figure, Table, figures_table, mean
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.picture import picture
@@ -52,7 +53,10 @@ class TextBench:
 
     def tables(self) -> tuple[Table, ...]:
         """Fidelity and plausibility, a row for each series."""
-        return (fidelity_table(self.prompts), plausibility_table(self.prompts))
+        by_series = {name: [p for p in self.prompts if p.series == name] for name in SERIES}
+        rows = [(f"{name}, {len(some)} prompts", some) for name, some in by_series.items() if some]
+        figures = (("fidelity", FIDELITY), ("plausibility", PLAUSIBILITY))
+        return tuple(figures_table(f"Text to scene: {what}", rows, of_what) for what, of_what in figures)
 
     def to_json(self) -> dict[str, object]:
         """Tables and every prompt."""
@@ -107,17 +111,13 @@ def run(
     for k, (name, asked) in enumerate(wanted):
         progress.report(k / len(wanted), f"Composing: {asked.prompt[:50]}")
         begun = time.perf_counter()
-        scene, notes = _compose(asked.prompt, library, seed)
+        made = compose_room(asked.prompt, library, seed)
         seconds = time.perf_counter() - begun
-        measured.append(Measured(name, asked.prompt, measure(asked, scene, library), tuple(notes), seconds))
+        result = measure(asked, made.scene, library)
+        measured.append(Measured(name, asked.prompt, result, tuple(made.notes), seconds))
         if pictures:
-            tiles.append(tile(scene, library, asked.prompt))
-    return TextBench(seed, tuple(measured)), sheet(tiles) if pictures else None
-
-
-def _compose(prompt: str, library: ShapeLibrary, seed: int) -> tuple[Scene, Sequence[str]]:
-    made = compose_room(prompt, library, seed)
-    return made.scene, made.notes
+            tiles.append(tile(made.scene, library, asked.prompt))
+    return TextBench(seed, tuple(measured)), grid(tiles, SHEET_COLUMNS) if pictures else None
 
 
 def tile(scene: Scene, library: ShapeLibrary, caption: str) -> UInt8[np.ndarray, "h w 3"]:
@@ -135,70 +135,34 @@ def tile(scene: Scene, library: ShapeLibrary, caption: str) -> UInt8[np.ndarray,
     return np.concatenate([bar, both], axis=0)
 
 
-def sheet(tiles: Sequence[UInt8[np.ndarray, "h w 3"]]) -> UInt8[np.ndarray, "_ _ 3"]:
-    """All tiles in a grid."""
-    blank = np.full_like(tiles[0], 255)
-    filled = [*tiles, *([blank] * (-len(tiles) % SHEET_COLUMNS))]
-    rows = [np.concatenate(filled[k : k + SHEET_COLUMNS], axis=1) for k in range(0, len(filled), SHEET_COLUMNS)]
-    return np.concatenate(rows, axis=0)
+Prompts = Sequence[Measured]
 
 
-Measure = Callable[[Sequence[Measured]], float | None]
-"""A figure of some prompts; None where nothing is asked."""
+def _share(of: Callable[[TextScene], tuple[int, int]]) -> Callable[[Prompts], float | None]:
+    """What is met of what was asked; None where nothing is asked."""
+
+    def share(prompts: Prompts) -> float | None:
+        met, asked = np.sum([of(p.result) for p in prompts], axis=0).tolist()
+        return met / asked if asked else None
+
+    return share
 
 
-def _share(pairs: Sequence[tuple[int, int]]) -> float | None:
-    asked = sum(total for _, total in pairs)
-    return sum(met for met, _ in pairs) / asked if asked else None
-
-
-def fidelity_table(prompts: Sequence[Measured]) -> Table:
-    """What was asked for and is there."""
-    return _table(
-        "Text to scene: fidelity",
-        prompts,
-        (
-            (Column("object count", ".3f", "↑"), lambda some: _share([p.result.counts for p in some])),
-            (Column("attribute", ".3f", "↑"), lambda some: _share([p.result.looks for p in some])),
-            (
-                Column("object-object relation", ".3f", "↑"),
-                lambda some: _share([p.result.object_relations for p in some]),
-            ),
-            (
-                Column("object-architecture relation", ".3f", "↑"),
-                lambda some: _share([p.result.room_relations for p in some]),
-            ),
-            (Column("prompts all met", ".3f", "↑"), lambda some: _mean([p.result.all_met for p in some])),
-            (Column("all met or named", ".3f", "↑"), lambda some: _mean([p.is_named for p in some])),
-            (Column("s a prompt", ".1f", "↓"), lambda some: _mean([p.seconds for p in some])),
-        ),
-    )
-
-
-def plausibility_table(prompts: Sequence[Measured]) -> Table:
-    """Whether the room is one that people could use."""
-    return _table(
-        "Text to scene: plausibility",
-        prompts,
-        (
-            (Column("supported", ".3f", "↑"), lambda some: _share([p.result.supported for p in some])),
-            (Column("colliding objects", ".3f", "↓"), lambda some: _share([p.result.colliding for p in some])),
-            (Column("navigability", ".3f", "↑"), lambda some: _mean([p.result.navigable for p in some])),
-            (Column("accessibility", ".3f", "↑"), lambda some: _mean([p.result.accessible for p in some])),
-            (Column("out of bounds", ".3f", "↓"), lambda some: _share([p.result.outside for p in some])),
-        ),
-    )
-
-
-def _table(title: str, prompts: Sequence[Measured], measures: Sequence[tuple[Column, Measure]]) -> Table:
-    """One row for each series of prompts."""
-    rows = [
-        Row(f"{name}, {len(some)} prompts", tuple(measure(some) for _, measure in measures))
-        for name in SERIES
-        if (some := [p for p in prompts if p.series == name])
-    ]
-    return Table(title, tuple(column for column, _ in measures), tuple(rows))
-
-
-def _mean(values: Sequence[float]) -> float:
-    return float(np.mean(values))
+FIDELITY = (
+    Figure(Column("object count", ".3f", "↑"), _share(lambda found: found.counts)),
+    Figure(Column("attribute", ".3f", "↑"), _share(lambda found: found.looks)),
+    Figure(Column("object-object relation", ".3f", "↑"), _share(lambda found: found.object_relations)),
+    Figure(Column("object-architecture relation", ".3f", "↑"), _share(lambda found: found.room_relations)),
+    Figure(Column("prompts all met", ".3f", "↑"), lambda prompts: mean(p.result.all_met for p in prompts)),
+    Figure(Column("all met or named", ".3f", "↑"), lambda prompts: mean(p.is_named for p in prompts)),
+    Figure(Column("s a prompt", ".1f", "↓"), lambda prompts: mean(p.seconds for p in prompts)),
+)
+"""What was asked for and is there."""
+PLAUSIBILITY = (
+    Figure(Column("supported", ".3f", "↑"), _share(lambda found: found.supported)),
+    Figure(Column("colliding objects", ".3f", "↓"), _share(lambda found: found.colliding)),
+    Figure(Column("navigability", ".3f", "↑"), lambda prompts: mean(p.result.navigable for p in prompts)),
+    Figure(Column("accessibility", ".3f", "↑"), lambda prompts: mean(p.result.accessible for p in prompts)),
+    Figure(Column("out of bounds", ".3f", "↓"), _share(lambda found: found.outside)),
+)
+"""Whether the room is one that people could use."""

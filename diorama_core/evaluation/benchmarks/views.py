@@ -8,7 +8,6 @@ that is searched, and always the same objects are counted: those of the first ph
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -17,11 +16,19 @@ import manifold3d
 import numpy as np
 
 from diorama_core.artefacts import Inputs, Photo
-from diorama_core.errors import Cancelled
-from diorama_core.evaluation.benchmarks.cases import MIN_ASKED, SIZE, Case, LeftOut, attempt, furnish, recipe
-from diorama_core.evaluation.metrics.pose import Alignment, object_alignment, pool
-from diorama_core.evaluation.metrics.scene import align_to_truth, as_placed, match_all
-from diorama_core.evaluation.reports.tables import Column, Row, Table, bootstrap_interval
+from diorama_core.evaluation.benchmarks.cases import (
+    MIN_ASKED,
+    SIZE,
+    Case,
+    LeftOut,
+    attempt,
+    attempt_one,
+    furnish,
+    recipe,
+)
+from diorama_core.evaluation.metrics.pose import Alignment, nothing_right, object_alignment, pool
+from diorama_core.evaluation.metrics.scene import Matched
+from diorama_core.evaluation.reports.tables import Column, Figure, Table, bootstrap_interval, figures_table, mean
 from diorama_core.layout.recipes import recipe as layout_recipe
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.multiview.rooms import PosedInputs, build_room
@@ -29,6 +36,7 @@ from diorama_core.multiview.sphere_scene import build_sphere
 from diorama_core.pipeline.run import build_scene
 from diorama_core.pipeline.stages import Stages, embedded_stages
 from diorama_core.progress import SILENT, Progress
+from diorama_core.protocols import LayoutStage
 from diorama_core.scene.room_edits import ceiling_height
 from diorama_core.scene.types import Camera, Scene
 from diorama_core.synthesis import sample_cameras
@@ -36,8 +44,6 @@ from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.sphere import sphere_photo, sphere_place
 from diorama_core.synthesis.splits import split_library
 from diorama_core.synthesis.truth import Studio, TruthView, transform
-
-log = logging.getLogger(__name__)
 
 COUNTS = (1, 2, 4, 8)
 """Photos that a scene is built from."""
@@ -62,6 +68,26 @@ class ViewsResult:
     """Found over true height of the room; 0 where none was found."""
 
 
+FIGURES = (
+    Figure(
+        Column("own Acc", better="↑"),
+        lambda results: pool([r.own for r in results]).acc,
+        lambda results: bootstrap_interval([r.own.acc for r in results], [r.own.count for r in results]),
+    ),
+    Figure(Column("rotation", better="↑"), lambda results: pool([r.own for r in results]).r_acc),
+    Figure(Column("place", better="↑"), lambda results: pool([r.own for r in results]).t_acc),
+    Figure(Column("size", better="↑"), lambda results: pool([r.own for r in results]).s_acc),
+    Figure(Column("objects", "d"), lambda results: sum(r.own.count for r in results)),
+    Figure(Column("time s", ".1f", "↓"), lambda results: mean(r.seconds for r in results)),
+    Figure(
+        Column("room IoU", better="↑"),
+        lambda results: mean(r.room for r in results),
+        lambda results: bootstrap_interval([r.room for r in results]),
+    ),
+    Figure(Column("height", ".1%", "↓"), lambda results: float(np.median([abs(r.height - 1.0) for r in results]))),
+)
+
+
 @dataclass(frozen=True)
 class ViewsBench:
     """Results of all rooms, room by room."""
@@ -71,30 +97,7 @@ class ViewsBench:
 
     def tables(self) -> tuple[Table, ...]:
         """One row for each number of photos."""
-        columns = (
-            Column("own Acc", better="↑"), Column("rotation", better="↑"), Column("place", better="↑"),
-            Column("size", better="↑"), Column("objects", "d"), Column("time s", ".1f", "↓"),
-            Column("room IoU", better="↑"), Column("height", ".1%", "↓"),
-        )  # fmt: skip
-        rows = []
-        for way in dict.fromkeys(r.way for r in self.results):
-            results = [r for r in self.results if r.way == way]
-            p = pool([r.own for r in results])
-            span = bootstrap_interval([r.own.acc for r in results], [r.own.count for r in results])
-            seconds = sum(r.seconds for r in results) / len(results)
-            plans, heights = [r.room for r in results], [abs(r.height - 1.0) for r in results]
-            room = bootstrap_interval(plans, [1] * len(plans))
-            values = (
-                p.acc,
-                p.r_acc,
-                p.t_acc,
-                p.s_acc,
-                p.count,
-                seconds,
-                float(np.mean(plans)),
-                float(np.median(heights)),
-            )
-            rows.append(Row(way, values, intervals=(span, None, None, None, None, None, room, None)))
+        by_way = {r.way: [other for other in self.results if other.way == r.way] for r in self.results}
         rooms = len({r.case for r in self.results})
         failed = sum(bool(r.failure) for r in self.results)
         note = (
@@ -105,9 +108,8 @@ class ViewsBench:
             "plan, mean; height: of the room, median of the deviations."
         )
         if self.left_out:
-            omissions = "; ".join(f"{r.case} ({r.reason})" for r in self.left_out)
-            note += f" Left out because they could not be made: {omissions}."
-        return (Table("Several photos of one room", columns, tuple(rows), note),)
+            note += f" Left out because they could not be made: {'; '.join(map(str, self.left_out))}."
+        return (figures_table("Several photos of one room", by_way.items(), FIGURES, note),)
 
     def to_json(self) -> dict[str, object]:
         """Tables and every scene."""
@@ -205,18 +207,21 @@ class _Room:
     def from_one_photo(self, views: Sequence[RoomView]) -> Scene:
         """The scene of a photo and its boxes."""
         given = photo_only(views[0].truth)
-        stages = embedded_stages(given, self.searched)
-        return build_scene(given, self.searched, stages=stages, progress=Progress(token=self.progress.token)).scene
+        return build_scene(given, self.searched, stages=self._choose(given), progress=self._quiet()).scene
 
     def from_photos(self, views: Sequence[RoomView]) -> Scene:
         """The scene of photos with their cameras and boxes."""
         photos = [PosedInputs(photo_only(v.truth), v.camera) for v in views]
-        layout = layout_recipe("feasible", self.searched, depth_measured=True)
+        return build_room(photos, self.searched, self._choose, self._layout(), self._quiet()).scene
 
-        def choose(inputs: Inputs) -> Stages:
-            return embedded_stages(inputs, self.searched)
+    def _choose(self, inputs: Inputs) -> Stages:
+        return embedded_stages(inputs, self.searched)
 
-        return build_room(photos, self.searched, choose, layout, Progress(token=self.progress.token)).scene
+    def _layout(self) -> LayoutStage:
+        return layout_recipe("feasible", self.searched, depth_measured=True)
+
+    def _quiet(self) -> Progress:
+        return Progress(token=self.progress.token)
 
     def from_sphere(self, views: Sequence[RoomView]) -> Scene:
         """The scene of a 360 degree photo and its boxes, seen by the first photo's camera, with the boxes there."""
@@ -224,13 +229,8 @@ class _Room:
         seen = sphere_photo(Studio(room, self.tested), sphere_place(room, self.case.seed))
         marked = seen.boxes(room.objects)
         photo = Photo(seen.rgb, "sphere.png", (seen.rgb.shape[1], seen.rgb.shape[0]))
-        layout = layout_recipe("feasible", self.searched, depth_measured=True)
-
-        def choose(inputs: Inputs) -> Stages:
-            return embedded_stages(inputs, self.searched)
-
-        progress = Progress(token=self.progress.token)
-        built = build_sphere(photo, tuple(marked.values()), self.searched, choose, layout, progress)
+        boxes = tuple(marked.values())
+        built = build_sphere(photo, boxes, self.searched, self._choose, self._layout(), self._quiet())
         T = seen.T_world_sphere.copy()
         T[:3, :3] = T[:3, :3] @ built.R_room_sphere.T
         T[:3, 3] -= T[:3, 2] * built.views[0].camera.position[2]
@@ -241,29 +241,15 @@ class _Room:
         return replace(scene, objects=objects, camera=first.camera)
 
     def score(self, way: str, views: Sequence[RoomView], build: Callable[[Sequence[RoomView]], Scene]) -> ViewsResult:
-        """The own alignment of the first photo's objects; a build that fails has none right.
-
-        Args:
-            way: how it is built.
-            views: the pictures.
-            build: makes a scene of them.
-        """
+        """The own alignment of the first photo's objects; a build that fails has none right."""
         begun, truth = time.process_time(), views[0].truth
-        items = [truth.scene.objects[k] for k in truth.indices]
-        try:
-            scene = align_to_truth(build(views), truth)
-        except Cancelled:
-            raise
-        except Exception as error:  # whatever goes wrong, the scene counts as failed
-            log.warning("%s, %s failed: %s", self.case.name, way, error)
-            failed = Alignment("object-focus", len(items), 0.0, 0.0, 0.0, 0.0)
-            reason = f"{type(error).__name__}: {error}"
-            return ViewsResult(self.case.name, way, failed, time.process_time() - begun, reason)
+        scene, failure = attempt_one(f"{self.case.name}, {way}", build, views)
         seconds = time.process_time() - begun
-        true = [as_placed(t, self.library.shape(t.shape_id).symmetry) for t in items]
-        placed = [None if m is None else as_placed(m) for m in match_all(items, scene)]
-        alignment = object_alignment(true, placed)
-        return ViewsResult(self.case.name, way, alignment, seconds, "", *_room_agreement(scene, truth.scene))
+        if scene is None:
+            return ViewsResult(self.case.name, way, nothing_right(len(truth.indices))[2], seconds, failure)
+        matched = Matched.of(truth, scene)
+        alignment = object_alignment(*matched.poses(self.library))
+        return ViewsResult(self.case.name, way, alignment, seconds, "", *_room_agreement(matched.scene, truth.scene))
 
 
 def _room_agreement(scene: Scene, truth: Scene) -> tuple[float, float]:

@@ -36,8 +36,6 @@ class LayoutView:
     """Index of the plane that is seen; -1 where there is none."""
     depth_m: Float[np.ndarray, "h w"]
     """z in the camera; `inf` where there is none."""
-    step: int = VIEW_STEP
-    """Pixels of the photo from one sample to the next."""
 
 
 @dataclass(frozen=True)
@@ -88,21 +86,20 @@ def architecture_scores(
         angle_deg: Tolerance within which a plane counts as found.
         offset_m: Likewise, of its distance.
     """
-    aligned = tuple(_align_plane(p, found_camera, camera) for p in estimated) if found_camera is not None else estimated
-    a = layout_view(estimated, found_camera or camera)
-    b = layout_view(true, camera)
+    seen_by = found_camera or camera
+    aligned = estimated if found_camera is None else tuple(_align_plane(p, seen_by, camera) for p in estimated)
+    a, b = layout_view(estimated, seen_by), layout_view(true, camera)
     if a.labels.shape != b.labels.shape:
         raise ValueError("the two cameras must have pictures of one size")
     planes = match_planes(aligned, true, camera, angle_deg=angle_deg, offset_m=offset_m)
     return ArchitectureScores(
         iou=segment_iou(a.labels, b.labels),
         pixel_error=pixel_error(a.labels, b.labels),
-        edge_error_px=edge_error(a.labels, b.labels) * b.step,
+        edge_error_px=edge_error(a.labels, b.labels) * VIEW_STEP,
         depth_rmse_m=depth_rmse(a.depth_m, b.depth_m),
         cdb_m=centred_chamfer(plane_points(aligned), plane_points(true)),
         cdb_seen_m=centred_chamfer(
-            _move(visible_points(estimated, found_camera or camera), found_camera or camera, camera),
-            visible_points(true, camera),
+            _move(visible_points(estimated, seen_by), seen_by, camera), visible_points(true, camera)
         ),
         recall=planes.recall,
         precision=planes.precision,
@@ -112,10 +109,10 @@ def architecture_scores(
 
 
 def layout_view(planes: tuple[Plane, ...], camera: Camera) -> LayoutView:
-    """The empty room seen through every `step`-th pixel."""
+    """The empty room seen through every `VIEW_STEP`-th pixel."""
     origin, rays = camera_rays(camera, VIEW_STEP)
     depth, labels = cast_planes(origin, rays, planes)
-    return LayoutView(labels, depth, VIEW_STEP)
+    return LayoutView(labels, depth)
 
 
 def segment_pairs(
@@ -133,11 +130,10 @@ def segment_pairs(
             either = ((estimated == a) | (true == b)).sum()
             overlap[i, j] = ((estimated == a) & (true == b)).sum() / max(int(either), 1)
     pairs: list[tuple[int, int, float]] = []
-    rest = overlap.copy()
-    while rest.size and rest.max() > 0:
-        i, j = divmod(int(rest.argmax()), rest.shape[1])
+    while overlap.size and overlap.max() > 0:
+        i, j = divmod(int(overlap.argmax()), len(theirs))
         pairs.append((ours[i], theirs[j], float(overlap[i, j])))
-        rest[i, :] = rest[:, j] = 0.0
+        overlap[i, :] = overlap[:, j] = 0.0
     return tuple(pairs), len(ours), len(theirs)
 
 

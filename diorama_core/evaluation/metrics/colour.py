@@ -25,13 +25,7 @@ _TWENTY_FIVE_7 = 25.0**7
 def delta_e_2000(
     lab_1: Float[np.ndarray, "*n 3"], lab_2: Float[np.ndarray, "*n 3"], k_lightness: float = 1.0
 ) -> Float[np.ndarray, "*n"]:
-    """CIEDE2000 of two arrays of CIELAB colours (L 0 to 100).
-
-    Args:
-        lab_1: colours.
-        lab_2: as many colours.
-        k_lightness: k_L of the formula; at `HALF_LIGHTNESS` lightness counts half.
-    """
+    """CIEDE2000 of two arrays of CIELAB colours (L 0 to 100); at k_L of `HALF_LIGHTNESS` lightness counts half."""
     (l1, a1, b1), (l2, a2, b2) = (np.moveaxis(np.asarray(lab, dtype=np.float64), -1, 0) for lab in (lab_1, lab_2))
     mean_chroma_7 = ((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2) ** 7
     stretch = 1 + 0.5 * (1 - np.sqrt(mean_chroma_7 / (mean_chroma_7 + _TWENTY_FIVE_7)))
@@ -72,12 +66,7 @@ _TURNS, _LEVELS = 24, 12
 
 
 def main_light(light: Lighting, points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
-    """What a light is at some places on average, in the terms of `RoomLight`: direction times strength.
-
-    Args:
-        light: Any.
-        points: In the world.
-    """
+    """What a light is at some places on average, in the terms of `RoomLight`: direction times strength."""
     height = (np.arange(_LEVELS) + 0.5) / _LEVELS * 2 - 1
     turn = (np.arange(_TURNS) + 0.5) / _TURNS * 2 * np.pi
     h, t = (grid.ravel() for grid in np.meshgrid(height, turn))

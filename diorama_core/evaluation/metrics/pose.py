@@ -12,7 +12,7 @@ about its up axis, unless `without_symmetry` is asked for. What is missing is wr
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -23,6 +23,8 @@ from diorama_core.scene.values import ArrayValue
 MAX_ANGLE_RAD = float(np.deg2rad(20.0))
 MAX_RATIO = 0.2
 MAX_DISTANCE_M = 0.2
+READINGS = ("mean over pairs", "against every other object", "object-focus")
+"""How "right" is counted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +43,7 @@ class Alignment:
     """Shares of objects (or pairs) whose rotation, translation and scale are right, and all three."""
 
     reading: str
-    """How "right" is counted: "mean over pairs", "against every other object" or "object-focus"."""
+    """One of `READINGS`."""
     count: int
     """Objects that should have been placed."""
     r_acc: float
@@ -49,9 +51,16 @@ class Alignment:
     s_acc: float
     acc: float
 
-    def to_json(self) -> dict[str, object]:
-        """Plain values for JSON."""
-        return asdict(self)
+    @property
+    def shares(self) -> tuple[float, float, float, float]:
+        """Rotation, translation, scale, and all three."""
+        return self.r_acc, self.t_acc, self.s_acc, self.acc
+
+
+def nothing_right(count: int) -> tuple[Alignment, Alignment, Alignment]:
+    """Every reading of a scene in which no object is right."""
+    pairs, every, own = (Alignment(reading, count, 0.0, 0.0, 0.0, 0.0) for reading in READINGS)
+    return pairs, every, own
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +73,11 @@ class PairChecks(ArrayValue):
     rotation: Bool[np.ndarray, "n n"]
     translation: Bool[np.ndarray, "n n"]
     scale: Bool[np.ndarray, "n n"]
+
+    @property
+    def all_three(self) -> Bool[np.ndarray, "n n"]:
+        """Pairs in which everything is right."""
+        return self.rotation & self.translation & self.scale
 
 
 def without_symmetry(truth: Sequence[Placed]) -> list[Placed]:
@@ -100,20 +114,16 @@ def scene_alignment(
 
     A scene of one object has no pairs: it is right when the object is there.
     """
-    checks = pair_checks(truth, predicted, every_axis=every_axis)
     n = len(truth)
-    grids = [checks.rotation, checks.translation, checks.scale]
-    grids.append(grids[0] & grids[1] & grids[2])
     if n < 2:
-        share_present = float(all(p is not None for p in predicted)) if n else 0.0
-        return (
-            Alignment("mean over pairs", n, share_present, share_present, share_present, share_present),
-            Alignment("against every other object", n, share_present, share_present, share_present, share_present),
-        )
+        shares = [float(n > 0 and all(p is not None for p in predicted))] * 4
+        return Alignment(READINGS[0], n, *shares), Alignment(READINGS[1], n, *shares)
+    checks = pair_checks(truth, predicted, every_axis=every_axis)
+    grids = [checks.rotation, checks.translation, checks.scale, checks.all_three]
     off = ~np.eye(n, dtype=bool)
     pairs = [float(g[off].mean()) for g in grids]
     every = [float(g.all(axis=1).mean()) for g in grids]
-    return Alignment("mean over pairs", n, *pairs), Alignment("against every other object", n, *every)
+    return Alignment(READINGS[0], n, *pairs), Alignment(READINGS[1], n, *every)
 
 
 def object_alignment(truth: Sequence[Placed], predicted: Sequence[Placed | None]) -> Alignment:
@@ -125,17 +135,16 @@ def object_alignment(truth: Sequence[Placed], predicted: Sequence[Placed | None]
             distance = float(np.linalg.norm(placed.centre - true.centre))
             right[k] = angle <= MAX_ANGLE_RAD, distance <= MAX_DISTANCE_M, ratio <= MAX_RATIO
     shares = [float(column.mean()) if len(truth) else 0.0 for column in (*right.T, right.all(axis=1))]
-    return Alignment("object-focus", len(truth), *shares)
+    return Alignment(READINGS[2], len(truth), *shares)
 
 
 def pool(alignments: Sequence[Alignment]) -> Alignment:
     """The mean over scenes, each counting by its objects."""
-    weights = np.array([a.count for a in alignments], dtype=float)
+    weights, reading = np.array([a.count for a in alignments], dtype=float), next((a.reading for a in alignments), "")
     if weights.sum() == 0:
-        return Alignment(alignments[0].reading if alignments else "", 0, 0.0, 0.0, 0.0, 0.0)
-    shares = np.array([(a.r_acc, a.t_acc, a.s_acc, a.acc) for a in alignments])
-    r, t, s, every = (float(x) for x in weights @ shares / weights.sum())
-    return Alignment(alignments[0].reading, int(weights.sum()), r, t, s, every)
+        return Alignment(reading, 0, 0.0, 0.0, 0.0, 0.0)
+    shares = weights @ np.array([a.shares for a in alignments]) / weights.sum()
+    return Alignment(reading, int(weights.sum()), *shares.tolist())
 
 
 def rotation_angle(a: Float[np.ndarray, "*#n 3 3"], b: Float[np.ndarray, "*#n 3 3"]) -> Float[np.ndarray, "*_"]:
@@ -157,7 +166,11 @@ def _same_turn(true_a: Placed, true_b: Placed, a: Placed, b: Placed) -> bool:
 
 
 def _same_way(true_a: Placed, true_b: Placed, a: Placed, b: Placed) -> bool:
-    return _angle_between(b.centre - a.centre, true_b.centre - true_a.centre) <= MAX_ANGLE_RAD
+    way, true_way = b.centre - a.centre, true_b.centre - true_a.centre
+    lengths = float(np.linalg.norm(way) * np.linalg.norm(true_way))
+    if lengths < 1e-12:
+        return bool(np.linalg.norm(way - true_way) < 1e-6)
+    return bool(np.arccos(np.clip(way @ true_way / lengths, -1.0, 1.0)) <= MAX_ANGLE_RAD)
 
 
 def _size_ratio(true_a: Placed, true_b: Placed, a: Placed, b: Placed) -> Float[np.ndarray, "3"]:
@@ -168,13 +181,6 @@ def _size_ratio(true_a: Placed, true_b: Placed, a: Placed, b: Placed) -> Float[n
 def _same_size(ratio: Float[np.ndarray, "3"], *, every_axis: bool) -> bool:
     off = np.abs(ratio - 1.0)
     return bool((off.max() if every_axis else off.mean()) <= MAX_RATIO)
-
-
-def _angle_between(a: np.ndarray, b: np.ndarray) -> float:
-    lengths = float(np.linalg.norm(a) * np.linalg.norm(b))
-    if lengths < 1e-12:
-        return 0.0 if np.linalg.norm(a - b) < 1e-6 else float(np.pi)
-    return float(np.arccos(np.clip(a @ b / lengths, -1.0, 1.0)))
 
 
 def _own_errors(true: Placed, placed: Placed) -> tuple[float, float]:

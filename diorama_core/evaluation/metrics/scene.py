@@ -13,13 +13,21 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.spatial import cKDTree
 
-from diorama_core.evaluation.metrics.pose import Alignment, Placed, object_alignment, scene_alignment, without_symmetry
+from diorama_core.evaluation.metrics.pose import (
+    Alignment,
+    Placed,
+    nothing_right,
+    object_alignment,
+    scene_alignment,
+    without_symmetry,
+)
 from diorama_core.evaluation.metrics.shape import shape_distance, shape_points
+from diorama_core.evaluation.reports.tables import mean
 from diorama_core.geometry.planes import is_in_plane_polygon
 from diorama_core.geometry.projection import box_iou
 from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.layout.exact import drift, mesh_overlap_m3, stable_share
-from diorama_core.layout.problem.problem import build_problem
+from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.report import measure
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.render.raycast import MeshCaster
@@ -97,16 +105,45 @@ class SceneScores:
     @classmethod
     def failure(cls, asked: int) -> SceneScores:
         """The prediction failed."""
-        pairs, every, per_object = (
-            Alignment(reading, asked, 0.0, 0.0, 0.0, 0.0)
-            for reading in ("mean over pairs", "against every other object", "object-focus")
-        )
+        pairs, every, own = nothing_right(asked)
         return cls(
-            asked, 0, pairs, every, per_object, pairs, pairs, None, None, relation=0.0, orientation=0.0, placement=0.0,
+            asked, 0, pairs, every, own, pairs, pairs, None, None, relation=0.0, orientation=0.0, placement=0.0,
             structure=0.0, box_overlap_cm=None, mesh_overlap_l=None, supported=0.0, truly_supported=0.0,
             out_of_bounds=1.0, stable=None, drift_cm=None, image_iou=0.0, chamfer_cm=None, f_score=0.0,
             kind=0.0,
         )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Matched:
+    """A prediction in the true camera's world, and what in it stands for each object asked for."""
+
+    scene: Scene
+    truth: tuple[SceneObject, ...]
+    match: tuple[SceneObject | None, ...]
+    """The predicted object with the same box in the photo, for each true one."""
+
+    @classmethod
+    def of(cls, view: TruthView, scene: Scene) -> Matched:
+        """Move a prediction to the truth and match boxes; each predicted object is used once."""
+        scene, truth = align_to_truth(scene, view), tuple(view.scene.objects[k] for k in view.indices)
+        left = {o.id: o for o in scene.objects if o.box_px is not None}
+        match: list[SceneObject | None] = []
+        for item in truth:
+            scored = [(float(box_iou(np.array(o.box_px), np.array(item.box_px))), o.id) for o in left.values()]
+            best, name = max(scored, default=(0.0, ""))
+            match.append(left.pop(name) if best >= SAME_BOX else None)
+        return cls(scene, truth, tuple(match))
+
+    @property
+    def counterparts(self) -> dict[str, SceneObject]:
+        """What stands for the true objects that were found, by their ids."""
+        return {t.id: m for t, m in zip(self.truth, self.match, strict=True) if m is not None}
+
+    def poses(self, library: ShapeLibrary) -> tuple[list[Placed], list[Placed | None]]:
+        """True and predicted poses as the alignment metrics read them."""
+        true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in self.truth]
+        return true, [None if m is None else as_placed(m) for m in self.match]
 
 
 def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physics: bool = False) -> SceneScores:
@@ -118,53 +155,48 @@ def scene_scores(view: TruthView, scene: Scene, library: ShapeLibrary, *, physic
         library: Where the shapes of both are.
         physics: Whether to switch on gravity (seconds a scene; needs MuJoCo).
     """
-    truth = [view.scene.objects[k] for k in view.indices]
     if not scene.objects:
-        return SceneScores.failure(len(truth))
-    height_off = _height_off(scene, view)
-    scene = align_to_truth(scene, view)
-    match = match_all(truth, scene)
-    placed = [None if m is None else as_placed(m) for m in match]
-    true = [as_placed(t, library.shape(t.shape_id).symmetry) for t in truth]
+        return SceneScores.failure(len(view.indices))
+    height_off, matched = _height_off(scene, view), Matched.of(view, scene)
+    scene, (true, placed) = matched.scene, matched.poses(library)
     pairs, every = scene_alignment(true, placed)
-    known = [m for m in match if m is not None]
-    distances = [shape_distance(library, t.shape_id, m.shape_id) for t, m in zip(truth, match) if m is not None]
+    found = [(t, m) for t, m in zip(matched.truth, matched.match, strict=True) if m is not None]
     layout = structure_of(scene, library)
     moved_by = drift(scene, library) if physics else None
-    chamfer_m, f_score = surface_agreement(scene_points(scene.objects, library), scene_points(truth, library))
+    chamfer_m, f_score = surface_agreement(scene_points(scene.objects, library), scene_points(matched.truth, library))
     return SceneScores(
-        asked=len(truth),
-        found=len(known),
+        asked=len(true),
+        found=len(found),
         pairs=pairs,
         every=every,
         own=object_alignment(true, placed),
         headed=scene_alignment(without_symmetry(true), placed)[0],
         each_axis=scene_alignment(true, placed, every_axis=True)[0],
         height_off=height_off,
-        shape_distance=float(np.mean(distances)) if distances else None,
-        relation=relation_accuracy(view, scene, match),
+        shape_distance=mean(shape_distance(library, t.shape_id, m.shape_id) for t, m in found),
+        relation=relation_accuracy(view, matched),
         orientation=layout["orientation"],
         placement=layout["placement"],
         structure=layout["structure"],
         box_overlap_cm=100 * layout["box_overlap_m"],
         mesh_overlap_l=1000 * mesh_overlap_m3(scene, library),
         supported=support_share(scene, library),
-        truly_supported=true_support_share(view, scene, match, library),
+        truly_supported=true_support_share(view, matched, library),
         out_of_bounds=out_of_bounds_share(scene),
         stable=None if moved_by is None else stable_share(moved_by),
         drift_cm=None if moved_by is None else 100 * float(np.mean([d for d, _ in moved_by.values()])),
-        image_iou=image_iou(view, scene, match, library),
+        image_iou=image_iou(view, matched, library),
         chamfer_cm=100 * chamfer_m,
         f_score=f_score,
-        kind=kind_share(truth, match, library),
+        kind=kind_share(matched, library),
     )
 
 
-def kind_share(truth: Sequence[SceneObject], match: Sequence[SceneObject | None], library: ShapeLibrary) -> float:
+def kind_share(matched: Matched, library: ShapeLibrary) -> float:
     """Share of the true objects whose counterpart has a shape of their kind."""
     right = [
         m is not None and record_of(library, m.shape_id).category == record_of(library, t.shape_id).category
-        for t, m in zip(truth, match, strict=True)
+        for t, m in zip(matched.truth, matched.match, strict=True)
     ]
     return float(np.mean(right)) if right else 1.0
 
@@ -183,25 +215,14 @@ def align_to_truth(scene: Scene, view: TruthView) -> Scene:
     return transform(scene, view.camera.T_world_camera @ scene.camera.T_camera_world)
 
 
-def match_all(truth: list[SceneObject], scene: Scene) -> list[SceneObject | None]:
-    """For every true object the predicted one with the same box in the photo; each is used once."""
-    left = {o.id: o for o in scene.objects if o.box_px is not None}
-    matches: list[SceneObject | None] = []
-    for item in truth:
-        scored = [(float(box_iou(np.array(o.box_px), np.array(item.box_px))), o.id) for o in left.values()]
-        best = max(scored, default=(0.0, ""))
-        matches.append(left.pop(best[1]) if best[0] >= SAME_BOX else None)
-    return matches
-
-
 def as_placed(item: SceneObject, symmetry: int = 1) -> Placed:
     """An object's pose and size as the alignment metrics read them."""
     return Placed(item.pose.R_world_object, item.pose.position, item.size_m, symmetry)
 
 
-def relation_accuracy(view: TruthView, scene: Scene, match: list[SceneObject | None]) -> float:
+def relation_accuracy(view: TruthView, matched: Matched) -> float:
     """Share of true edges found: the same parent object, or a plane of the same role, and the same relation."""
-    names = {t: m.id for t, m in zip((view.scene.objects[k].id for k in view.indices), match) if m is not None}
+    scene, names = matched.scene, {name: item.id for name, item in matched.counterparts.items()}
     edges = true_supports(view)
     right = 0
     for edge in edges:
@@ -218,35 +239,31 @@ def relation_accuracy(view: TruthView, scene: Scene, match: list[SceneObject | N
 
 def support_share(scene: Scene, library: ShapeLibrary) -> float:
     """SceneEval's support: share of objects whose lowest point (or back) is within 1 cm of what the graph says."""
-    good = 0
-    for item in scene.objects:
-        edge = scene.support_of(item.id)
-        if edge is not None:
-            good += _gap(item, edge.parent, scene, library) <= SUPPORT_M
+    held = [(item, scene.support_of(item.id)) for item in scene.objects]
+    good = sum(edge is not None and _gap(item, edge.parent, scene, library) <= SUPPORT_M for item, edge in held)
     return good / max(len(scene.objects), 1)
 
 
-def true_support_share(view: TruthView, scene: Scene, match: list[SceneObject | None], library: ShapeLibrary) -> float:
+def true_support_share(view: TruthView, matched: Matched, library: ShapeLibrary) -> float:
     """Share of the true support edges whose child touches (within 1 cm) what stands for its true supporter.
 
     For a plane any plane of the same role stands; whatever the scene's own graph says does not count.
-
-    Args:
-        view: the true picture.
-        scene: the prediction.
-        match: what stands for each true object; None without.
-        library: where shapes come from.
     """
-    matches = {view.scene.objects[k].id: m for k, m in zip(view.indices, match) if m is not None}
-    edges, good = true_supports(view), 0
+    scene, found, edges, good = matched.scene, matched.counterparts, true_supports(view), 0
     for edge in edges:
         if view.scene.has_plane(edge.parent):
             parents = [p.id for p in scene.architecture.by_role(view.scene.plane(edge.parent).role)]
         else:
-            parents = [matches[edge.parent].id] if edge.parent in matches else []
-        if edge.child in matches:
-            good += any(_gap(matches[edge.child], p, scene, library) <= SUPPORT_M for p in parents)
+            parents = [found[edge.parent].id] if edge.parent in found else []
+        if edge.child in found:
+            good += any(_gap(found[edge.child], p, scene, library) <= SUPPORT_M for p in parents)
     return good / len(edges) if edges else 1.0
+
+
+def _footprint_points(item: SceneObject, shares: Float[np.ndarray, "s"]) -> Float[np.ndarray, "n 3"]:
+    """A grid of places at an object's middle height, at shares of its depth and width from its middle, in the world."""
+    grid = np.stack(np.meshgrid(shares, shares), axis=-1).reshape(-1, 2)
+    return item.pose.apply(np.column_stack([grid * np.asarray(item.shape_size_m)[:2], np.zeros(len(grid))]))
 
 
 def _gap(item: SceneObject, parent: str, scene: Scene, library: ShapeLibrary) -> float:
@@ -255,9 +272,7 @@ def _gap(item: SceneObject, parent: str, scene: Scene, library: ShapeLibrary) ->
         plane = scene.plane(parent)
         return float(np.abs(corners @ plane.normal - plane.offset).min())
     carrier = scene.object(parent)
-    steps = np.linspace(-0.45, 0.45, 7)
-    grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
-    spots = item.pose.apply(np.column_stack([grid * np.asarray(item.shape_size_m)[:2], np.zeros(len(grid))]))
+    spots = _footprint_points(item, np.linspace(-0.45, 0.45, 7))
     spots[:, 2] = corners[:, 2].min() + PROBE_M
     rays = np.concatenate([spots, np.tile([0.0, 0.0, -1.0], (len(spots), 1))], axis=1).astype(np.float32)
     mesh = library.mesh(carrier.shape_id)
@@ -271,31 +286,18 @@ def out_of_bounds_share(scene: Scene, samples: int = 12) -> float:
     if floor is None or not scene.objects:
         return 1.0
     steps = (np.arange(samples) + 0.5) / samples - 0.5
-    grid = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
-    out = 0
-    for item in scene.objects:
-        local = np.column_stack([grid * np.asarray(item.shape_size_m)[:2], np.zeros(len(grid))])
-        points = item.pose.apply(local)
-        out += float(is_in_plane_polygon(points, floor).mean()) < INSIDE_SHARE
-    return out / len(scene.objects)
+    inside = [is_in_plane_polygon(_footprint_points(item, steps), floor).mean() for item in scene.objects]
+    return float(np.mean([share < INSIDE_SHARE for share in inside]))
 
 
-def image_iou(view: TruthView, scene: Scene, match: list[SceneObject | None], library: ShapeLibrary) -> float:
+def image_iou(view: TruthView, matched: Matched, library: ShapeLibrary) -> float:
     """Mean mask agreement of the objects asked for when the prediction is seen by its own camera, hiding included.
 
     Its own, because that is the picture its user sees; an error of the camera counts in every metric in space.
-
-    Args:
-        view: the true picture.
-        scene: the prediction.
-        match: what stands for each true object; None without.
-        library: where shapes come from.
     """
-    pairs = [
-        (view.object_ids == k, None if placed is None else placed.id)
-        for k, placed in zip(view.indices, match, strict=True)
-    ]
-    return mean_mask_iou(pairs, scene, library, view.camera.intrinsics)
+    ids = (None if placed is None else placed.id for placed in matched.match)
+    pairs = [(view.object_ids == k, name) for k, name in zip(view.indices, ids, strict=True)]
+    return mean_mask_iou(pairs, matched.scene, library, view.camera.intrinsics)
 
 
 def mean_mask_iou(
@@ -354,11 +356,11 @@ def structure_of(scene: Scene, library: ShapeLibrary) -> dict[str, float]:
     """The layout report's shares and overlaps of a scene as it is; all 0 for an empty one."""
     if not scene.objects:
         return {"orientation": 0.0, "placement": 0.0, "structure": 0.0, "box_overlap_m": 0.0}
-    problem = build_problem(scene, library)
+    return measure_scene(build_problem(scene, library), scene)
+
+
+def measure_scene(problem: Problem, scene: Scene) -> dict[str, float]:
+    """What the layout report says of a scene's poses under a problem's graph and room."""
     poses = [scene.object(i).pose for i in problem.ids]
-    return measure(
-        problem,
-        np.array([p.R_world_object for p in poses]),
-        np.array([p.position for p in poses]),
-        np.array([p.scale for p in poses]),
-    )
+    turns, positions, scales = ([getattr(p, n) for p in poses] for n in ("R_world_object", "position", "scale"))
+    return measure(problem, np.array(turns), np.array(positions), np.array(scales))

@@ -76,12 +76,9 @@ def measure(asked: Asked, scene: Scene, library: ShapeLibrary) -> TextScene:
     """Compare a scene with what was asked for."""
     frame = RoomFrame.of(scene)
     failures: list[str] = []
-    counted = 0
-    for name, number in asked.counts.items():
-        present = len(_members(scene, name))
-        counted += present == number
-        if present != number:
-            failures.append(f"{present} of {number} {name}")
+    present = {name: len(_members(scene, name)) for name in asked.counts}
+    missed = {name: number for name, number in asked.counts.items() if present[name] != number}
+    failures += [f"{present[name]} of {number} {name}" for name, number in missed.items()]
     looks = _looks(asked, scene, library, failures)
     objects, room = _relations(asked, scene, frame, failures)
     standing = [o for o in scene.objects if o.category not in OPENING_CATEGORIES]
@@ -90,17 +87,17 @@ def measure(asked: Asked, scene: Scene, library: ShapeLibrary) -> TextScene:
     beyond = [o for o in standing if not lie_within(footprint_of(o)[None], frame.outline, OUTSIDE_M)[0]]
     failures += [f"{o.label} collides" for o in standing if o.id in hit]
     failures += [f"{o.label} is outside" for o in beyond]
-    free = _free_floor(scene, frame)
+    access = list(access_shares(scene, frame).values())
     return TextScene(
-        counts=(counted, len(asked.counts)),
+        counts=(len(present) - len(missed), len(present)),
         looks=looks,
         object_relations=objects,
         room_relations=room,
         supported=(supported, len(standing)),
-        colliding=(len([o for o in standing if o.id in hit]), len(standing)),
+        colliding=(sum(o.id in hit for o in standing), len(standing)),
         outside=(len(beyond), len(standing)),
-        navigable=_navigable(free),
-        accessible=_mean(access_shares(scene, frame)),
+        navigable=_navigable(_free_floor(scene, frame)),
+        accessible=float(np.mean(access)) if access else 1.0,
         failures=tuple(failures),
     )
 
@@ -112,20 +109,17 @@ def _members(scene: Scene, name: str) -> list[SceneObject]:
 
 
 def _looks(asked: Asked, scene: Scene, library: ShapeLibrary, failures: list[str]) -> tuple[int, int]:
-    met = total = 0
-    for name, words in asked.looks.items():
-        for word in words:
-            total += 1
-            named = _members(scene, name)
-            look = look_of(word)
-            good = bool(named) and all(
-                has_look(record_of(library, o.shape_id), word) or (look is not None and o.colour == look.colour)
-                for o in named
-            )
-            met += good
-            if not good:
-                failures.append(f"{name} is not {word}")
-    return met, total
+    def good(name: str, word: str) -> bool:
+        named, look = _members(scene, name), look_of(word)
+        return bool(named) and all(
+            has_look(record_of(library, o.shape_id), word) or (look is not None and o.colour == look.colour)
+            for o in named
+        )
+
+    pairs = [(name, word) for name, words in asked.looks.items() for word in words]
+    wrong = [f"{name} is not {word}" for name, word in pairs if not good(name, word)]
+    failures += wrong
+    return len(pairs) - len(wrong), len(pairs)
 
 
 def _relations(
@@ -228,10 +222,6 @@ def _navigable(free: Bool[np.ndarray, "h w"]) -> float:
     return float(sizes.max() / sizes.sum())
 
 
-def _mean(shares: Mapping[str, float]) -> float:
-    return float(np.mean(list(shares.values()))) if shares else 1.0
-
-
 def access_shares(scene: Scene, frame: RoomFrame) -> Mapping[str, float]:
     """Share of free floor before the front of each piece of furniture; of round things, before their freest side."""
     shares: dict[str, float] = {}
@@ -261,8 +251,5 @@ def _free_share(frame: RoomFrame, item: SceneObject, turn: float, free: Bool[np.
     depth, width = (item.size_m[0], item.size_m[1]) if abs(np.cos(turn)) > 0.5 else (item.size_m[1], item.size_m[0])
     place = item.pose.position[:2] + np.array([np.cos(yaw), np.sin(yaw)]) * (depth + BEFORE_M) / 2
     strip = footprints(np.array([BEFORE_M, width]), place[None], np.array([yaw]))[0]
-    inside = np.zeros_like(free, dtype=np.uint8)
-    origin = frame.outline.min(axis=0)
-    cv2.fillPoly(inside, [np.round((strip - origin) / CELL_M).astype(np.int32)], 1)
     area = float(BEFORE_M * width) / CELL_M**2
-    return float(min(1.0, (free & (inside > 0)).sum() / max(area, 1.0)))
+    return float(min(1.0, (free & (_raster(frame, [strip]) > 0)).sum() / max(area, 1.0)))

@@ -6,15 +6,16 @@ Whole rooms are drawn, since the objects of one room share its camera and its sc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 OTHER = "other dataset"
 """Said beside every row of the paper: its 344 renderings are not ours."""
 Value = float | int | str | None
+Interval = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -34,9 +35,8 @@ class Row:
     name: str
     values: tuple[Value, ...]
     from_paper: bool = False
-    intervals: tuple[tuple[float, float] | None, ...] = ()
-    """For each value where its 90 % interval begins and ends (`intervals.bootstrap_interval`); none at all by default.
-    """
+    intervals: tuple[Interval | None, ...] = ()
+    """For each value where its 90 % interval begins and ends (`bootstrap_interval`); none at all by default."""
 
 
 @dataclass(frozen=True)
@@ -92,13 +92,57 @@ def paper_rows(rows: Mapping[str, Sequence[Value]]) -> tuple[Row, ...]:
     return tuple(Row(name, tuple(values), from_paper=True) for name, values in rows.items())
 
 
+@dataclass(frozen=True)
+class Figure:
+    """What a column says of some cases."""
+
+    column: Column
+    of: Callable[[Any], float | None]
+    """None where nothing can be said of the cases."""
+    interval: Callable[[Any], Interval | None] = lambda _: None
+
+
+def figures_table(
+    title: str,
+    cases_by_row: Iterable[tuple[str, Any]],
+    figures: Sequence[Figure],
+    note: str = "",
+    published: Mapping[str, Sequence[Value]] | None = None,
+) -> Table:
+    """Every figure of each row's cases.
+
+    Args:
+        title: of the table.
+        cases_by_row: names of rows, with what their figures are of.
+        figures: the columns.
+        note: below the table.
+        published: rows of the publication.
+    """
+    rows = (
+        Row(name, tuple(f.of(cases) for f in figures), intervals=tuple(f.interval(cases) for f in figures))
+        for name, cases in cases_by_row
+    )
+    return Table(title, tuple(f.column for f in figures), (*rows, *paper_rows(published or {})), note)
+
+
+def mean(values: Iterable[float | None]) -> float | None:
+    """The mean of the values that are known and finite; None without any."""
+    known = [v for v in values if v is not None and np.isfinite(v)]
+    return float(np.mean(known)) if known else None
+
+
+def difference(new: float | None, old: float | None) -> float | None:
+    """What a figure changed by; None where either is unknown."""
+    return None if new is None or old is None else new - old
+
+
 def _format(value: Value, form: str) -> str:
     if value is None:
         return "–"
     return value if isinstance(value, str) else format(value, form)
 
 
-def _span(interval: tuple[float, float] | None, form: str) -> str:
+def _span(interval: Interval | None, form: str) -> str:
     """An interval as written behind its value."""
     return "" if interval is None else f" ({_format(interval[0], form)} to {_format(interval[1], form)})"
 
@@ -110,7 +154,6 @@ COVERAGE = 0.9
 DRAWS = 2000
 GROUP_DRAWS = 500
 """Fewer, since a statistic of whole groups is computed anew for every sample."""
-Interval = tuple[float, float]
 
 
 def bootstrap_interval(values: Sequence[float | None], weights: Sequence[float] | None = None) -> Interval | None:
@@ -129,9 +172,7 @@ def bootstrap_interval(values: Sequence[float | None], weights: Sequence[float] 
         return None
     drawn = np.random.default_rng(0).integers(len(x), size=(DRAWS, len(x)))
     total = w[drawn].sum(axis=1)
-    means = (w * x)[drawn].sum(axis=1)[total > 0] / total[total > 0]
-    low, high = np.quantile(means, [(1 - COVERAGE) / 2, (1 + COVERAGE) / 2])
-    return float(low), float(high)
+    return _percentiles(((w * x)[drawn].sum(axis=1)[total > 0] / total[total > 0]).tolist())
 
 
 def statistic_interval(
@@ -140,12 +181,12 @@ def statistic_interval(
 ) -> Interval | None:
     """The percentile interval of any statistic of groups of objects; None with fewer than two groups. Deterministic.
 
-    Args:
-        groups: Drawn whole, such as photos with their objects.
-        statistic: Of the groups drawn; draws for which it is None are left out.
+    Draws for which the statistic is None are left out.
     """
-    values = [statistic([groups[k] for k in drawn]) for drawn in _draws(len(groups), GROUP_DRAWS)]
-    return _percentiles(values, COVERAGE)
+    rng, count = np.random.default_rng(0), len(groups)
+    draws = (rng.integers(count, size=count).tolist() for _ in range(GROUP_DRAWS if count > 1 else 0))
+    values = (statistic([groups[k] for k in drawn]) for drawn in draws)
+    return _percentiles([v for v in values if v is not None])
 
 
 def paired_interval(
@@ -153,28 +194,17 @@ def paired_interval(
     after: Sequence[Group],
     statistic: Callable[[Sequence[Group]], float | None],
 ) -> Interval | None:
-    """The percentile interval of what a statistic changes by, the same groups drawn before and after.
+    """`statistic_interval` of what a statistic changes by, the same groups in the same order drawn before and after."""
 
-    Args:
-        before: Groups of objects, such as photos.
-        after: The same groups in the same order.
-        statistic: Of the groups drawn; draws for which either is None are left out.
-    """
-    values = []
-    for drawn in _draws(len(before), GROUP_DRAWS):
-        old, new = statistic([before[k] for k in drawn]), statistic([after[k] for k in drawn])
-        values.append(None if old is None or new is None else new - old)
-    return _percentiles(values, COVERAGE)
+    def change(pairs: Sequence[tuple[Group, Group]]) -> float | None:
+        old, new = zip(*pairs, strict=True)
+        return difference(statistic(new), statistic(old))
+
+    return statistic_interval(list(zip(before, after, strict=True)), change)
 
 
-def _draws(count: int, draws: int) -> Iterator[list[int]]:
-    rng = np.random.default_rng(0)
-    return (rng.integers(count, size=count).tolist() for _ in range(draws if count > 1 else 0))
-
-
-def _percentiles(values: Sequence[float | None], coverage: float) -> Interval | None:
-    known = [v for v in values if v is not None]
+def _percentiles(known: Sequence[float]) -> Interval | None:
     if not known:
         return None
-    low, high = np.quantile(known, [(1 - coverage) / 2, (1 + coverage) / 2])
+    low, high = np.quantile(known, [(1 - COVERAGE) / 2, (1 + COVERAGE) / 2])
     return float(low), float(high)

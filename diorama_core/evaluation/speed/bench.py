@@ -1,11 +1,8 @@
 """How time and memory grow, in tables, and against the committed figures. `diorama bench speed`.
 
-Processor time of all threads, so that a busy machine changes little; see `speed_meter` for the yardstick.
-
-The committed figures of a speed run, and what has become slower since.
-
-Times are kept as multiples of `speed_meter.yardstick_s`, so that another machine may compare; growth exponents and
-the gain over the eager optimiser need no such help.
+Processor time of all threads, so that a busy machine changes little. Committed times are multiples of
+`meter.yardstick_s`, so that another machine may compare; growth exponents and the gain over the eager optimiser need no
+such help.
 """
 
 from __future__ import annotations
@@ -13,7 +10,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from pathlib import Path
 
@@ -23,25 +20,11 @@ from diorama_core.errors import InputError
 from diorama_core.evaluation.reports.tables import Column, Row, Table, Value
 from diorama_core.evaluation.speed import series as measure
 from diorama_core.evaluation.speed.eager import BATCHED_GPU, EAGER, NO_GPU, OURS, WAYS
-from diorama_core.evaluation.speed.meter import check_ascending, process_peak_mb, yardstick_s
+from diorama_core.evaluation.speed.meter import process_peak_mb, yardstick_s
 from diorama_core.evaluation.speed.series import OBJECTS, Series
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import SILENT, Progress
 
-__all__ = [
-    "FULL",
-    "QUICK",
-    "Extent",
-    "Series",
-    "SpeedBench",
-    "memory_table",
-    "read_figures",
-    "regression_bytes",
-    "regression_table",
-    "run",
-    "slower",
-    "speed_table",
-]
 MIN_RECORDED_S = 0.004
 """Shorter times are mostly noise and are not recorded."""
 REGRESSION_FILE = "speed_regression.json"
@@ -68,12 +51,6 @@ class Extent:
     feature_shapes: tuple[int, ...]
     word_shapes: tuple[int, ...]
 
-    def check(self) -> None:
-        """Raise `InputError` for quantities that do not ascend."""
-        check_ascending("picture sizes", tuple(float(w * h) for w, h in self.sizes))
-        for name in ("large_scene_objects", "layout_objects", "step_objects", "feature_shapes", "word_shapes"):
-            check_ascending(name.replace("_", " "), tuple(map(float, getattr(self, name))))
-
 
 FULL = Extent(
     sizes=((320, 240), (640, 480), (1280, 960), (1920, 1440)),
@@ -83,8 +60,6 @@ FULL = Extent(
     feature_shapes=(1_000, 10_000, 100_000, 1_000_000),
     word_shapes=(1_000, 10_000, 100_000),
 )
-
-
 QUICK = Extent(
     sizes=((320, 240), (640, 480)),
     large_scene_objects=(1, 5, 20),
@@ -161,7 +136,6 @@ def run(
         extent: How far to go.
         before: Figures to compare with; None takes the committed ones.
     """
-    extent.check()
     known = read_figures() if before is None else before
     sticks = [yardstick_s()]
     series = measure.stages_by_objects(library, seed, extent.large_scene_objects, progress.part(0.0, 0.55))
@@ -189,11 +163,9 @@ def memory_table(series: Sequence[Series], against: str) -> Table:
 
 def step_table(series: Sequence[Series]) -> Table:
     """One step of the optimiser, ours and others."""
-    chosen = [s for s in series if s.points or s.missing]
-    note = "" if any(s.what == BATCHED_GPU and s.points for s in chosen) else f"GPU: {NO_GPU}."
+    note = "" if any(s.what == BATCHED_GPU and s.points for s in series) else f"GPU: {NO_GPU}."
     title = "Milliseconds of one refinement step against objects"
-    table = _table(title, chosen, OBJECTS, ".2f", _milliseconds, exponent=True)
-    return Table(table.title, table.columns, table.rows, note)
+    return replace(_table(title, series, OBJECTS, ".2f", _milliseconds, exponent=True), note=note)
 
 
 def _milliseconds(series: Series) -> tuple[float | None, ...]:
@@ -259,16 +231,10 @@ def read_figures(path: Path | None = None) -> dict[str, float]:
         raise InputError(f"{path} is not a file of speed figures ({error}); write one with --keep FILE") from error
 
 
-def worse_by(name: str, before: float, now: float, tolerance: float = TOLERANCE) -> float | None:
+def _worse_by(name: str, before: float, now: float, tolerance: float = TOLERANCE) -> float | None:
     """How many times worse a figure has become where that is more than the tolerance; None where it is not.
 
     A growth exponent counts as the factor that its rise costs over a tenfold quantity.
-
-    Args:
-        name: of the figure.
-        before: its value then.
-        now: its value now.
-        tolerance: factor that counts as noise.
     """
     if not (math.isfinite(before) and math.isfinite(now)):
         return math.inf
@@ -284,7 +250,7 @@ def worse_by(name: str, before: float, now: float, tolerance: float = TOLERANCE)
 
 def slower(now: Mapping[str, float], before: Mapping[str, float], tolerance: float = TOLERANCE) -> dict[str, float]:
     """The figures measured both times that have become worse, with how many times."""
-    factors = {name: worse_by(name, before[name], now[name], tolerance) for name in sorted(before) if name in now}
+    factors = {name: _worse_by(name, before[name], now[name], tolerance) for name in sorted(before) if name in now}
     return {name: times for name, times in factors.items() if times is not None}
 
 

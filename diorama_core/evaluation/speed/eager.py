@@ -27,19 +27,25 @@ def step_seconds(way: str, count: int, seed: int) -> float | None:
     """Processor seconds of one refinement step on a generated room; on a GPU seconds by the clock, None without one."""
     problem = build_problem(generate_room(seed + 500, count).observed, box_library())
     if way == OURS:
-        return _ours(problem)
+        return our_seconds(problem)
     if way == BATCHED:
         return cost_of(partial(_slope_of_all, problem, "cpu"), 3).seconds
     if way == EAGER:
-        return cost_of(partial(_slope_pair_by_pair, problem), 1).seconds
+        return pair_by_pair_seconds(problem)
     return _gpu_seconds(partial(_slope_of_all, problem, "cuda")) if torch.cuda.is_available() else None
 
 
-def _ours(problem: Problem) -> float:
+def our_seconds(problem: Problem) -> float:
+    """Processor seconds of one of our steps."""
     schedule = staged.StageSchedule()
     state = staged.State(problem.R.copy(), problem.p.copy(), problem.scale.copy())
     work = partial(staged.refinement_stage, problem, state, schedule, lambda *_: None)
     return cost_of(work).seconds / schedule.steps
+
+
+def pair_by_pair_seconds(problem: Problem) -> float:
+    """Processor seconds of one step that sums the cost pair by pair through autograd."""
+    return cost_of(partial(_slope_pair_by_pair, problem)).seconds
 
 
 def _tensors(problem: Problem, device: str) -> tuple[Tensor, Tensor, Tensor]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import sys
 import time
 from collections.abc import Callable
@@ -11,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diorama_core.errors import InputError, UnavailableError
+from diorama_core.errors import UnavailableError
 from diorama_core.processes import give_back_memory
 from diorama_core.progress import Progress, ProgressEvent
 
@@ -68,7 +67,7 @@ class _Meter:
         self._begun = time.process_time()
 
     def read(self) -> Cost:
-        seconds, peak = time.process_time() - self._begun, _peak_mb()
+        seconds, peak = time.process_time() - self._begun, _status_mb("VmHWM")
         known = self._before_mb is not None and peak is not None
         return Cost(seconds, max(0.0, (peak or 0.0) - (self._before_mb or 0.0)) if known else None)
 
@@ -122,19 +121,9 @@ def _begin_peak_mb() -> float | None:
     return _status_mb("VmRSS")
 
 
-def _peak_mb() -> float | None:
-    return _status_mb("VmHWM")
-
-
 def _status_mb(key: str) -> float | None:
     try:
         lines = Path("/proc/self/status").read_text().splitlines()
     except OSError:
         return None
     return next((float(line.split()[1]) / 1024 for line in lines if line.startswith(f"{key}:")), None)
-
-
-def check_ascending(what: str, quantities: tuple[float, ...]) -> None:
-    """Refuse quantities that tell no growth."""
-    if not quantities or any(b <= a for a, b in itertools.pairwise(quantities)):
-        raise InputError(f"the {what} of a speed run must be given, each larger than the one before")

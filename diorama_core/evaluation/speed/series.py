@@ -12,7 +12,6 @@ import numpy as np
 from jaxtyping import Float32
 
 from diorama_core.artefacts import Inputs
-from diorama_core.evaluation.benchmarks.cases import Case, furnish
 from diorama_core.evaluation.speed.eager import WAYS, step_seconds
 from diorama_core.evaluation.speed.meter import Cost, StageClock, cost_of, growth_exponent
 from diorama_core.export.gltf import glb_bytes
@@ -23,6 +22,7 @@ from diorama_core.library.store.features import FeatureMatrix
 from diorama_core.pipeline.run import build_scene
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.synthesis import furnish_room
 from diorama_core.synthesis.cameras import level_pose, sample_cameras
 from diorama_core.synthesis.layout_rooms import box_library, generate_room, room_box
 from diorama_core.synthesis.truth import Studio
@@ -109,13 +109,7 @@ class Collected:
         self._costs: dict[str, list[tuple[float, Cost]]] = {}
 
     def add(self, what: str, quantity: float, cost: Cost) -> None:
-        """One more point.
-
-        Args:
-            what: the step that was timed.
-            quantity: how much there was of it: objects, files, triangles.
-            cost: its time and memory.
-        """
+        """One more point: what was timed, and of how much."""
         self._costs.setdefault(what, []).append((quantity, cost))
 
     def series(self) -> list[Series]:
@@ -138,7 +132,7 @@ def stages_by_size(
         progress: reports and cancellation.
     """
     collected = Collected(MEGAPIXELS)
-    scene = furnish(Case(seed, "living"), library)
+    scene = furnish_room(seed, "living", library, split="test")
     camera = sample_cameras(scene, library, seed, 1)[0]
     studio = Studio(scene, library)
     build_scene(studio.view(camera, sizes[0]).inputs, library)  # makes ready the shapes that later builds find ready

@@ -22,9 +22,9 @@ from diorama_core.evaluation.benchmarks.local_datasets import (
 )
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, yaw_rotation
-from diorama_core.synthesis import furnish_room, render_truth, sample_cameras
 from diorama_core.synthesis.artefacts import true_supports
 from diorama_core.synthesis.truth import transform
+from tests.evaluation.truth import view_of_room
 from tests.few_shapes import few_shapes
 
 SIZE = (320, 240)
@@ -33,9 +33,7 @@ SIZE = (320, 240)
 @pytest.fixture(scope="module")
 def ssdb(tmp_path_factory):
     """One picture of a small room."""
-    library = built_in_library()
-    room = furnish_room(16, "bathroom", library, clutter=0)
-    view = render_truth(room, sample_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
+    view = view_of_room(16, "bathroom", SIZE)
     folder = tmp_path_factory.mktemp("ssdb") / "scene_01"
     folder.mkdir()
     Image.fromarray(view.inputs.photo.rgb).save(folder / "scene.png")
@@ -46,7 +44,7 @@ def ssdb(tmp_path_factory):
         for e in true_supports(view)
     }
     (folder / "gt.json").write_text(json.dumps(records))
-    return folder.parent, room, len(records)
+    return folder.parent, view.scene, len(records)
 
 
 def _scan2cad_model(item: SceneObject) -> dict[str, object]:
@@ -70,9 +68,7 @@ def _scan2cad_model(item: SceneObject) -> dict[str, object]:
 
 @pytest.mark.slow
 def test_a_folder_of_scan2cad_is_built_and_fills_the_table_by_category(tmp_path):
-    library = built_in_library()
-    room = furnish_room(3, "office", library, clutter=2)
-    view = render_truth(room, sample_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
+    view = view_of_room(3, "office", SIZE, clutter=2)
     shown = [o for o in view.scene.objects if o.mask_id is not None]
     seen = [o for name, most in (("chair", 2), ("desk", 1)) for o in [s for s in shown if s.category == name][:most]]
     instances = np.where(np.isin(view.inputs.instances, [o.mask_id for o in seen]), view.inputs.instances, 0)
@@ -140,9 +136,7 @@ def _frame(models) -> ScanFrame:
 
 
 def test_models_are_aligned_in_the_world_of_the_scan():
-    model = AlignedModel(
-        "m", "chair", yaw_rotation(0.3), np.array([1.0, 1.0, 0.45]), np.array([0.5, 0.5, 0.9]), symmetry=1
-    )
+    model = AlignedModel("chair", yaw_rotation(0.3), np.array([1.0, 1.0, 0.45]), np.array([0.5, 0.5, 0.9]), symmetry=1)
     frame = _frame([model])
     pose = Pose(model.R_world_object, model.centre, np.ones(3))
     item = SceneObject("a", "chair", "chair", "s", (0.5, 0.5, 0.9), pose)
@@ -151,13 +145,14 @@ def test_models_are_aligned_in_the_world_of_the_scan():
     scene = transform(Scene(camera=frame.camera, objects=(item,)), elsewhere)
     assert alignments([model], scene, frame) == (("chair", True),)
     assert alignments([model, model], scene, frame) == (("chair", True), ("chair", False))
-    shifted = transform(Scene(camera=frame.camera, objects=(item,)), elsewhere)
-    far = SceneObject("a", "chair", "chair", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose.move([0.3, 0, 0]))
-    assert alignments([model], Scene(camera=shifted.camera, objects=(far,)), frame) == (("chair", False),)
-    table = SceneObject("a", "table", "table", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose)
-    assert alignments([model], Scene(camera=shifted.camera, objects=(table,)), frame) == (("chair", False),)
-    stool = SceneObject("a", "stool", "stool", "s", (0.5, 0.5, 0.9), shifted.objects[0].pose)
-    assert alignments([model], Scene(camera=shifted.camera, objects=(stool,)), frame) == (("chair", True),)
+    there = scene.objects[0].pose
+    for kind, pose, right in (
+        ("chair", there.move([0.3, 0, 0]), False),
+        ("table", there, False),
+        ("stool", there, True),
+    ):
+        other = SceneObject("a", kind, kind, "s", (0.5, 0.5, 0.9), pose)
+        assert alignments([model], Scene(camera=scene.camera, objects=(other,)), frame) == (("chair", right),)
 
 
 def test_the_table_by_category_stands_beside_the_papers():

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from diorama_core.artefacts import Inputs, Photo
 from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.photo_build import (
     SIZE,
@@ -21,8 +20,8 @@ from diorama_core.evaluation.benchmarks.photo_build import (
 )
 from diorama_core.pipeline.run import Built
 from diorama_core.scene.types import Scene
-from diorama_core.synthesis.truth import TruthView
 from tests.built import built_scene
+from tests.evaluation.truth import blank_view
 from tests.primitives import PrimitiveLibrary, box_room, place
 from tests.synthetic_rooms import look
 
@@ -40,20 +39,7 @@ def test_ghosts_are_what_differs_from_the_floor():
 
 
 LIBRARY = PrimitiveLibrary()
-GREY = np.full((60, 80, 3), 200, np.uint8)
-NOTHING = np.full(GREY.shape[:2], -1, np.int32)
-VIEW = TruthView(
-    inputs=Inputs(Photo(GREY, "grey.png", (80, 60))),
-    scene=Scene(),
-    normals_world=np.zeros(GREY.shape, np.float32),
-    plane_ids=NOTHING,
-    room_plane_ids=NOTHING,
-    room_depth_m=np.zeros(GREY.shape[:2], np.float32),
-    object_ids=NOTHING,
-    empty_room=GREY,
-    amodal_boxes=(),
-    visible_fraction=np.zeros(0),
-)
+VIEW = blank_view(Scene(), (80, 60), 200)
 
 
 def built(camera: bool = True) -> Built:

@@ -14,8 +14,7 @@ from diorama_core.errors import InputError
 from diorama_core.evaluation.adapters.photo_annotations import read_annotations
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
 from diorama_core.evaluation.reports import tables
-from diorama_core.library.catalogue import built_in_library
-from diorama_core.synthesis import furnish_room, render_truth, sample_cameras
+from tests.evaluation.truth import view_of_room
 
 SIZE = (240, 180)
 ANNOTATIONS = Path(__file__).parents[2] / "photo_annotations.json"
@@ -24,9 +23,7 @@ ANNOTATIONS = Path(__file__).parents[2] / "photo_annotations.json"
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """A rendered bathroom with three annotations, one photo of another size, and one that is not there."""
-    library = built_in_library()
-    room = furnish_room(16, "bathroom", library, clutter=0)
-    view = render_truth(room, sample_cameras(room, library, 1, 1, SIZE)[0], library, SIZE, with_empty_room=False)
+    view = view_of_room(16, "bathroom", SIZE)
     folder = tmp_path_factory.mktemp("photos")
     for name in ("made", "other"):
         Image.fromarray(view.inputs.photo.rgb).save(folder / f"{name}.png")

@@ -29,10 +29,9 @@ from diorama_core.evaluation.benchmarks.pose_tables import comparison_table
 from diorama_core.pose import RenderAndCompare
 from diorama_core.pose.correspondence.solvers import CorrespondencePose
 from diorama_core.render.templates import TemplateGrid
-from diorama_core.synthesis import render_truth, sample_cameras
-from diorama_core.synthesis.layout_rooms import box_library, generate_room
+from diorama_core.synthesis.layout_rooms import box_library
 from diorama_core.synthesis.truth import TruthView
-from tests.evaluation.truth import without_unasked
+from tests.evaluation.truth import view_of_boxes, without_unasked
 
 
 @pytest.fixture(scope="module")
@@ -41,10 +40,8 @@ def library():
 
 
 @pytest.fixture(scope="module")
-def view(library) -> TruthView:
-    room = generate_room(3, 8).truth
-    camera = sample_cameras(room, library, 1, 1, (160, 120))[0]
-    return render_truth(room, camera, library, (160, 120))
+def view() -> TruthView:
+    return view_of_boxes()
 
 
 @pytest.fixture(scope="module")
@@ -100,9 +97,7 @@ def test_the_truth_is_right_and_nothing_is_wrong(view, library) -> None:
 
 def test_a_column_for_each_reading(view, library) -> None:
     right, wrong = pose_scores(view, without_unasked(view), library), PoseScores.failure(len(view.indices))
-    table = comparison_table(
-        "t", (("a", (right, wrong)), ("b", (wrong, wrong))), {"ZSP": (0.1, 0.2, 0.3, 0.4, 5.0, 0.6)}
-    )
+    table = comparison_table("t", {"a": (right, wrong), "b": (wrong, wrong)}, {"ZSP": (0.1, 0.2, 0.3, 0.4, 5.0, 0.6)})
     assert table.row("a")["Acc"] == table.row("a")["strict Acc"] == table.row("a")["own Acc"] == 0.5
     assert table.row("b")["own rAcc"] == 0
     assert (table.row("a")["relation"], table.row("b")["relation"]) == (0.5, 0.0)
@@ -111,26 +106,18 @@ def test_a_column_for_each_reading(view, library) -> None:
 
 def test_a_room_that_fails_counts_for_every_solver(view, library, solvers, monkeypatch) -> None:
     monkeypatch.setattr(pose_bench, "predict", lambda inputs, library: 1 / 0)
-    tally = pose_bench._Tally()
-    pose_bench._one_room(view, solvers, tally, pose_bench.Progress(), "room")
-    bench = tally.result(0)
-    assert [(d, s) for d, s, _ in bench.compared] == list(CONDITIONS)
-    for _, _, named in bench.compared:
-        assert [len(rows) for _, rows in named] == [1] * (1 + len(BASELINES))
-        assert all(rows[0].pairs.acc == 0 and rows[0].asked == len(view.indices) for _, rows in named)
+    bench = pose_bench.PoseBench(0)
+    pose_bench._one_room(view, solvers, bench, pose_bench.Progress(), "room")
+    assert list(bench.compared) == list(CONDITIONS)
+    for named in bench.compared.values():
+        assert [len(rows) for rows in named.values()] == [1] * (1 + len(BASELINES))
+        assert all(rows[0].pairs.acc == 0 and rows[0].asked == len(view.indices) for rows in named.values())
     assert len(bench.tables()) == len(CONDITIONS) + 6
     assert replace(bench, seed=1).to_json()["seed"] == 1
-    rows = {name for name, _ in bench.ablation}
-    assert rows >= {
-        "O, P, S, R",
-        "true graph",
-        "true architecture",
-        "feasible, true graph",
-        "feasible, true architecture",
-    }
-    after = dict(bench.groups_after)
-    assert after
-    assert all(group.every == 0 for group in after.values())
+    truths = {f"{stage}true {what}" for stage in ("", "feasible, ") for what in ("graph", "architecture")}
+    assert bench.ablation.keys() >= {"O, P, S, R", *truths}
+    assert bench.groups_after
+    assert all(every == 0 for group in bench.groups_after.values() for *_, every, _ in group)
 
 
 def test_groups_are_counted_after_the_papers_layout_too(view, library) -> None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.arrangement.support_hypotheses import MEASURED, REASONED, ObservationNoise
-from diorama_core.artefacts import Cuboid, Inputs, ObjectGeometry, Photo
+from diorama_core.artefacts import Cuboid, ObjectGeometry
 from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.substitution import (
     enlarge,
@@ -22,6 +24,7 @@ from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, Support, yaw_rotation
 from diorama_core.synthesis.layout_rooms import room_box
 from diorama_core.synthesis.truth import TruthView
+from tests.evaluation.truth import blank_view
 
 K = Intrinsics(640, 480, 540.0, 540.0, 320.0, 240.0)
 FACING = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
@@ -35,13 +38,8 @@ def camera(height_m: float, yaw: float = 0.0) -> Camera:
 
 
 def view(height_m: float = 1.5) -> TruthView:
-    item = SceneObject(**{**TRUE.__dict__, "mask_id": 1, "box_px": (1.0, 1.0, 50.0, 50.0)})
-    scene = Scene(camera(height_m), room_box(8.0, 8.0), (item,), (Support("t", "floor"),))
-    blank = np.zeros((4, 4), np.float32)
-    ids = np.full((4, 4), -1, np.int32)
-    photo = Photo(np.zeros((4, 4, 3), np.uint8), "x.png", (4, 4))
-    normals = np.zeros((4, 4, 3), np.float32)
-    return TruthView(Inputs(photo), scene, normals, ids, ids, blank, ids, photo.rgb, (None,), np.ones(1))
+    item = replace(TRUE, mask_id=1, box_px=(1.0, 1.0, 50.0, 50.0))
+    return blank_view(Scene(camera(height_m), room_box(8.0, 8.0), (item,), (Support("t", "floor"),)))
 
 
 def estimate(height_m: float = 1.8, yaw: float = 0.0) -> ObjectGeometry:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from diorama_core.evaluation.metrics.scene import kind_share
+from diorama_core.evaluation.metrics.scene import Matched, kind_share
 from diorama_core.library.catalogue import built_in_library
-from diorama_core.scene.types import Pose, SceneObject
+from diorama_core.scene.types import Pose, Scene, SceneObject
 
 
 def test_kinds_of_what_is_absent_are_wrong() -> None:
@@ -17,5 +17,5 @@ def test_kinds_of_what_is_absent_are_wrong() -> None:
         shape = library.in_category(kind)[0]
         return SceneObject(kind, kind, kind, shape.id, shape.size_m, Pose.upright(np.zeros(3)))
 
-    truth = [a("chair"), a("desk"), a("desk")]
-    assert kind_share(truth, [a("chair"), a("chair"), None], library) == pytest.approx(1 / 3)
+    matched = Matched(Scene(), (a("chair"), a("desk"), a("desk")), (a("chair"), a("chair"), None))
+    assert kind_share(matched, library) == pytest.approx(1 / 3)

@@ -10,8 +10,6 @@ import pytest
 
 from diorama_core.errors import Cancelled, InputError
 from diorama_core.evaluation.speed.bench import (
-    Extent,
-    Series,
     SpeedBench,
     memory_table,
     read_figures,
@@ -23,7 +21,7 @@ from diorama_core.evaluation.speed.bench import (
 )
 from diorama_core.evaluation.speed.eager import BATCHED, BATCHED_GPU, EAGER, OURS, step_seconds
 from diorama_core.evaluation.speed.meter import StageClock, cost_of, growth_exponent, yardstick_s
-from diorama_core.evaluation.speed.series import features_by_library, large_scene, words_by_library
+from diorama_core.evaluation.speed.series import Series, features_by_library, large_scene, words_by_library
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.progress import CancelToken, Progress
 
@@ -126,11 +124,9 @@ def test_tables_say_what_was_not_measured():
 
 
 def test_ours_beats_pair_by_pair():
-    ours, batched, eager = (step_seconds(way, 12, 0) for way in (OURS, BATCHED, EAGER))
-    assert ours is not None
-    assert batched is not None
-    assert eager is not None
-    assert ours < eager / 5
+    ours, batched, eager = (step_seconds(way, 12, 0) or 0.0 for way in (OURS, BATCHED, EAGER))
+    assert 0 < ours < eager / 5
+    assert batched > 0
 
 
 def test_a_store_on_disk_is_searched_as_it_grows():
@@ -155,11 +151,6 @@ def test_a_large_scene_has_what_was_asked_for_side_by_side():
     assert inside.mean() > 0.85
     again, _ = large_scene(built_in_library(), 30, 0)
     assert again == scene
-
-
-def test_quantities_must_grow():
-    with pytest.raises(InputError, match="large scene objects"):
-        Extent(((32, 24),), (5, 5), (1,), (1,), (1,), (1,)).check()
 
 
 def test_the_yardstick_is_short():
