@@ -24,14 +24,9 @@ SEEK_TABLE_END = bytes.fromhex("b1ea928f")
 
 
 def write_blend(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write a `.blend` with everything in it, whole or not at all.
+    """Write a `.blend` with everything in it, as `Writer` says; raises `UnavailableError` where Blender fails.
 
     Objects are parented to their supporters and keep their custom properties; the photo lies behind the camera's view.
-
-    Raises:
-        ExportError: when it cannot be written.
-        UnavailableError: Blender is missing or fails.
-        Cancelled: when asked to stop; what was there stays.
     """
     worker = Path(__file__).with_name("blend_worker.py")
     with whole_file(Path(path)) as temporary, tempfile.TemporaryDirectory() as name:

@@ -25,12 +25,7 @@ def environment_of(gathered: ExportScene, progress: Progress = SILENT) -> Float3
 
 
 def write_hdr(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write a Radiance picture, whole or not at all.
-
-    Raises:
-        ExportError: when it cannot be written.
-        Cancelled: when asked to stop; what was there stays.
-    """
+    """Write a Radiance picture, as `Writer` says."""
     radiance = environment_of(gathered, progress)
     good, content = cv2.imencode(".hdr", np.ascontiguousarray(radiance[..., ::-1]))
     if not good:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Writer(Protocol):
-    """Writes a gathered scene, whole or not at all; raises `ExportError` when it cannot."""
+    """Writes a gathered scene, whole or not at all: raises `ExportError` when it cannot, `Cancelled` when asked to stop."""
 
     def __call__(self, gathered: ExportScene, path: Path, progress: Progress) -> None:
         """Write to `path`, replacing what is there only when all went well."""

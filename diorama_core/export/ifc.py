@@ -32,12 +32,7 @@ THROUGH_M = 0.05
 
 
 def write_ifc(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write the model, whole or not at all.
-
-    Raises:
-        ExportError: when it cannot be written.
-        Cancelled: when asked to stop; what was there stays.
-    """
+    """Write the model, as `Writer` says."""
     builder = _Builder(scene, progress)
     with whole_file(Path(path)) as temporary, temporary.open("w", encoding="ascii", newline="\n") as stream:
         stream.writelines(builder.build().lines())

@@ -37,11 +37,7 @@ SCREEN_GAMMA = 2.2
 
 
 def write_mjcf(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write a MuJoCo model: `.xml` with a folder beside it, or everything as one `.zip`.
-
-    Raises:
-        ExportError: when it cannot be written.
-    """
+    """Write a MuJoCo model: `.xml` with a folder beside it, or everything as one `.zip`, as `Writer` says."""
     progress.report(0.0, "preparing colliders")
     physical = physical_scene(gathered)
     main, folder = f"{Path(path).stem}.xml", companion_folder(path, "mjcf")

@@ -38,12 +38,7 @@ R_SHAPE_FILE = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
 def write_scene_state(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write the state (.json), or the state with its models (.zip), whole or not at all.
-
-    Raises:
-        ExportError: when it cannot be written.
-        Cancelled: when asked to stop; what was there stays.
-    """
+    """Write the state (.json), or the state with its models (.zip), as `Writer` says."""
     path = Path(path)
     text = json.dumps(scene_state(scene), indent=1, allow_nan=False)
     if path.suffix.lower() != ".zip":

@@ -29,11 +29,7 @@ FULL_LIGHT_LUX = 1000.0
 
 
 def write_sdf(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write an SDF world: `.sdf` with a folder beside it, or everything as one `.zip`.
-
-    Raises:
-        ExportError: when it cannot be written.
-    """
+    """Write an SDF world: `.sdf` with a folder beside it, or everything as one `.zip`, as `Writer` says."""
     write_linked(gathered, path, progress, "sdf", sdf_files)
 
 

@@ -40,12 +40,7 @@ SLACK_M = 0.02
 
 
 def write_sweet_home(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write the home, whole or not at all.
-
-    Raises:
-        ExportError: when it cannot be written.
-        Cancelled: when asked to stop; what was there stays.
-    """
+    """Write the home, as `Writer` says."""
     with whole_file(Path(path)) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         models: dict[str, str] = {}
         for number, (key, name, content) in enumerate(_model_files(scene)):

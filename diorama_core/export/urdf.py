@@ -28,11 +28,7 @@ _TYPES = {"fixed": "fixed", "hinge": "revolute", "slide": "prismatic", "swivel":
 
 
 def write_urdf(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write a URDF: `.urdf` with a folder beside it, or everything as one `.zip`.
-
-    Raises:
-        ExportError: when it cannot be written.
-    """
+    """Write a URDF: `.urdf` with a folder beside it, or everything as one `.zip`, as `Writer` says."""
     write_linked(gathered, path, progress, "urdf", urdf_files)
 
 
