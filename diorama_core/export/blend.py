@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from diorama_core.errors import ExportError
-from diorama_core.export.blender import run_in_blender
+from diorama_core.export.blender import WORKER, run_in_blender
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.gltf import write_gathered
@@ -28,7 +28,6 @@ def write_blend(scene: ExportScene, path: Path, progress: Progress = SILENT) -> 
 
     Objects are parented to their supporters and keep their custom properties; the photo lies behind the camera's view.
     """
-    worker = Path(__file__).with_name("blend_worker.py")
     with whole_file(Path(path)) as temporary, tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         plain = replace(scene, options=replace(scene.options, compression="none"))
@@ -44,7 +43,7 @@ def write_blend(scene: ExportScene, path: Path, progress: Progress = SILENT) -> 
             Image.fromarray(np.ascontiguousarray(scene.photo)).save(folder / "photo.png")
             job["photo"] = str(folder / "photo.png")
         progress.report(0.3, "opening the scene in Blender")
-        run_in_blender(worker, job, name="Blender", progress=progress.part(0.3, 1.0))
+        run_in_blender(WORKER, job, name="Blender", progress=progress.part(0.3, 1.0))
         check_whole(folder / "room.blend", path)
         shutil.copyfile(folder / "room.blend", temporary)
 

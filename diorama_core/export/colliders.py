@@ -15,12 +15,21 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, StaticSlab, is_soft
+from diorama_core.export.bodies import (
+    MovingPart,
+    PhysicalScene,
+    Points,
+    RigidBody,
+    StaticSlab,
+    barriers,
+    ground_piece,
+    is_soft,
+    slab_pieces,
+)
 from diorama_core.export.gathering import ExportObject, ExportOptions, ExportScene, gather, rigid_inverse
 from diorama_core.export.limbs import ExportLimb, limb_parts
 from diorama_core.export.overlaps import Cuts, cut, drape
 from diorama_core.export.physics import GRAVITY, Inertia, friction_of, inertia_of, plausible_mass_kg
-from diorama_core.export.slabs import barriers, ground_piece, slab_pieces
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
@@ -297,9 +306,8 @@ def _carrier(gathered: ExportScene, node: ExportObject) -> str | None:
         return node.parent
     if support is not None:
         return node.parent if support.relation == "mounted on" else _STANDING
-    floor = gathered.scene.architecture.floor
-    height = 0.0 if floor is None else float(floor.centre[2])
-    return _STANDING if abs(float(node.item.corners_world[:, 2].min()) - height) < NEAR_FLOOR_M else None
+    standing = abs(float(node.item.corners_world[:, 2].min()) - gathered.floor_m) < NEAR_FLOOR_M
+    return _STANDING if standing else None
 
 
 def _weld(body: RigidBody, carrier: str | None) -> RigidBody:

@@ -18,10 +18,8 @@ from jaxtyping import Float
 from diorama_core.export.door_swings import door_swings, opening_out
 from diorama_core.export.lights import EvenLight, ExportLight, MainLight, even_light_of, lights_of, main_light_of
 from diorama_core.export.limbs import ExportLimb, OneShape, group_by_joint, limb_of
-from diorama_core.export.names import Labels
-from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, fit_pictures
-from diorama_core.export.pictures import Picture, photo_text
-from diorama_core.export.sharing import SharedAppearance
+from diorama_core.export.pictures import MAX_PHOTO_TEXTURES_PX, Picture, fit_pictures, photo_text
+from diorama_core.export.sharing import Labels, SharedAppearance
 from diorama_core.geometry.openings import with_openings
 from diorama_core.geometry.rooms import rooms_of_objects, rooms_of_planes
 from diorama_core.io.text import clean_text
@@ -173,6 +171,10 @@ class ExportScene:
             below[item.parent] = (*below.get(item.parent, ()), item)
         return below
 
+    def lights_of(self, object_id: str) -> list[ExportLight]:
+        """The lights of an object."""
+        return [light for light in self.lights if light.owner == object_id]
+
     @cached_property
     def main_light(self) -> MainLight | None:
         """The photo's main light; None where it tells none, and where the room is not written."""
@@ -188,6 +190,12 @@ class ExportScene:
     def room_of(self) -> Mapping[str, HomeRoom]:
         """The room of each plane and object of a home, by their ids."""
         return _rooms_by_id(self.scene)
+
+    @property
+    def floor_m(self) -> float:
+        """Height of the floor in the world; 0 without one."""
+        floor = self.scene.architecture.floor
+        return 0.0 if floor is None else float(floor.centre[2])
 
     @property
     def _room_is_lit(self) -> bool:
@@ -209,6 +217,10 @@ class ExportScene:
     def children_of(self, parent: str | None) -> tuple[ExportObject, ...]:
         """Exported objects directly below an object, or below the root."""
         return self._objects_by_parent.get(parent, ())
+
+    def points_of(self, mesh: str, scale: Float[np.ndarray, "3"]) -> Float[np.ndarray, "n 3"]:
+        """All vertices of a mesh at a scale."""
+        return np.concatenate([s.vertices for s in self.meshes[mesh].surfaces]) * scale
 
     def T_parent(self, item: ExportObject) -> Float[np.ndarray, "4 4"]:
         """The object's rigid transform in the frame of the object that carries it, or in the world."""
@@ -282,6 +294,18 @@ def gather(
         photo=photo,
         provenance=dict(provenance or {}),
     )
+
+
+def T_world_lens(camera: Camera) -> Float[np.ndarray, "4 4"]:
+    """Where a camera is that looks along its -z with y up, as glTF, USD and MuJoCo have it; ours looks along +z."""
+    return camera.T_world_camera @ np.diag([1.0, -1.0, -1.0, 1.0])
+
+
+def shift(offset: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4 4"]:
+    """A translation."""
+    out = np.eye(4)
+    out[:3, 3] = offset
+    return out
 
 
 def rigid_inverse(T: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "4 4"]:

@@ -24,7 +24,8 @@ from typing import Any
 
 import meshoptimizer
 import numpy as np
-from jaxtyping import Float32, Int, Integer
+from jaxtyping import Float, Float32, Int, Integer
+from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import UnavailableError
 from diorama_core.export.gathering import Compression
@@ -75,11 +76,6 @@ class GltfDocument:
         self._json.setdefault(kind, []).append(entry)
         return len(self._json[kind]) - 1
 
-    def node(self, index: int) -> dict[str, Any]:
-        """A node that was added, to be completed."""
-        node: dict[str, Any] = self._json["nodes"][index]
-        return node
-
     def add_light(self, light: dict[str, Any]) -> int:
         """A light of KHR_lights_punctual."""
         self.use("KHR_lights_punctual")
@@ -87,9 +83,14 @@ class GltfDocument:
         lights.append(light)
         return len(lights) - 1
 
-    def set_scene(self, index: int) -> None:
-        """State which scene is shown."""
-        self._json["scene"] = index
+    def add_light_node(self, name: str, light: int, T: Float[np.ndarray, "4 4"], **more: Any) -> int:
+        """A node that shines with a light, at a rigid transform in its parent's frame."""
+        extension = {"KHR_lights_punctual": {"light": light}}
+        return self.add("nodes", {"name": name, **placement(T), "extensions": extension, **more})
+
+    def set_scene(self, name: str, root: int) -> None:
+        """State which node the scene that is shown has."""
+        self._json["scene"] = self.add("scenes", {"name": name, "nodes": [root]})
 
     def add_mesh(self, name: str, surfaces: tuple[Surface, ...]) -> int:
         """A mesh with one primitive per surface."""
@@ -273,6 +274,12 @@ class GltfDocument:
             image = self.add("images", {"bufferView": self._view(content), "mimeType": _MEDIA_TYPES[suffix]})
             self._pictures[id(picture)] = self.add("textures", {"sampler": 0, "source": image})
         return self._pictures[id(picture)]
+
+
+def placement(T: Float[np.ndarray, "4 4"]) -> dict[str, list[float]]:
+    """A node's rotation (glTF quaternions are x, y, z, w) and translation."""
+    quaternion = Rotation.from_matrix(T[:3, :3]).as_quat(canonical=True)
+    return {"rotation": [float(v) for v in quaternion], "translation": [float(v) for v in T[:3, 3]]}
 
 
 def tangents(surface: Surface) -> Float32[np.ndarray, "n 4"]:

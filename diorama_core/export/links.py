@@ -22,9 +22,12 @@ from diorama_core.export.gathering import ExportMesh, ExportScene, rigid_inverse
 from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.physics import Inertia
 from diorama_core.export.wavefront import MaterialFile, hull_file, obj_file
+from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.progress import Progress
+from diorama_core.render.appearance import Material
 
 MATERIALS = "materials.mtl"
+_TERMS = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
 LinkJoint = Literal["free", "fixed", "hinge", "slide", "swivel"]
 
 
@@ -184,3 +187,18 @@ def collider_files(physical: PhysicalScene, folder: str) -> Iterator[Entry]:
     for owner, parts in owners:
         for number, part in enumerate(parts):
             yield collider_file(folder, owner, number), hull_file(*hull_faces(part))
+
+
+def numbers(values: Float[np.ndarray, " n"]) -> str:
+    """Numbers side by side, with nine significant digits."""
+    return " ".join([f"{value:.9g}" for value in np.asarray(values, dtype=float).tolist()])
+
+
+def inertia_terms(tensor: Float[np.ndarray, "3 3"]) -> dict[str, str]:
+    """The six different entries of an inertia tensor, by the names that URDF and SDF give them."""
+    return {name: f"{float(tensor[at]):.8g}" for name, at in _TERMS.items()}
+
+
+def srgb_rgba(material: Material) -> Float[np.ndarray, "4"]:
+    """A material's colour as programs without linear light expect it."""
+    return np.append(linear_to_srgb(np.asarray(material.colour)), material.alpha)

@@ -80,6 +80,12 @@ class Dimension:
         return float(np.linalg.norm(self.end - self.start))
 
     @property
+    def text_angle_deg(self) -> float:
+        """Angle of the line for text that is read from below or from the right."""
+        along = self.end - self.start
+        return (float(np.degrees(np.arctan2(along[1], along[0]))) + 89.9) % 180.0 - 89.9
+
+    @property
     def text(self) -> str:
         """The length in metres as it is written."""
         return f"{self.length_m:.2f}"
@@ -300,12 +306,10 @@ def _crosses(start: Float[np.ndarray, "2"], end: Float[np.ndarray, "2"], wall: D
 
 def _piece(scene: ExportScene, item: ExportObject, outlines: tuple[Outline, ...]) -> Piece:
     bottom = float(item.item.corners_world[:, 2].min())
-    floor = scene.scene.architecture.floor
-    level = 0.0 if floor is None else float(floor.centre[2])
     roles = {p.id: p.plane.role for p in scene.planes}
     on_floor = item.support is None or roles.get(item.support.parent) == "floor"
     depth, width, height = (float(v) for v in item.item.size_m)
-    overhead = bottom - level > OVERHEAD_M
+    overhead = bottom - scene.floor_m > OVERHEAD_M
     label = "" if item.item.category in UNNAMED else item.item.label
     return Piece(item.id, label, outlines, (depth, width), height, overhead, on_floor, bottom)
 

@@ -17,13 +17,12 @@ from diorama_core.export.bodies import MovingPart, RigidBody
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, write_package
 from diorama_core.export.gathering import ExportScene
-from diorama_core.export.links import body_name, collider_files, links_of, mesh_files
+from diorama_core.export.links import body_name, collider_files, links_of, mesh_files, numbers
 from diorama_core.export.mjcf import mjcf_text, texture_files
 from diorama_core.export.navigation import (
     HIGH_M,
     LOW_M,
     floor_area,
-    floor_level,
     free_spot,
     map_files,
     occupied_area,
@@ -35,7 +34,6 @@ from diorama_core.export.navigation import (
 from diorama_core.export.regions import Region, regions_of
 from diorama_core.export.sdf import sdf_files
 from diorama_core.export.urdf import urdf_files
-from diorama_core.export.xml_values import numbers
 from diorama_core.progress import SILENT, Progress
 
 FOLDER = "files"
@@ -79,8 +77,7 @@ def write_robot(gathered: ExportScene, path: Path, progress: Progress = SILENT) 
     texts |= sdf_files(gathered, physical, links, "room.sdf", FOLDER)
     texts["room.xml"] = with_sites(mjcf_text(gathered, physical, FOLDER), regions)
     texts["objects.json"] = _json({"objects": [_object(gathered, body) for body in physical.bodies]})
-    level = floor_level(gathered)
-    texts["regions.json"] = _json({"regions": [_region(r, level, walk, radius) for r in regions]})
+    texts["regions.json"] = _json({"regions": [_region(r, gathered.floor_m, walk, radius) for r in regions]})
     texts["navigation.json"] = _json({"radius_m": radius, "free": [rings(p) for p in walk]})
     limits = {"lift": MAX_LIFT_KG, "grasp": MAX_GRASP_M, "reach": REACH_M, "low": LOW_M, "high": HIGH_M}
     texts["README.md"] = README.format(name=gathered.name, radius=radius, **limits)
@@ -135,8 +132,7 @@ def _object(gathered: ExportScene, body: RigidBody) -> dict[str, Any]:
 def _joint(gathered: ExportScene, body: RigidBody, moving: MovingPart) -> dict[str, Any]:
     limb, node = moving.limb, body.node
     T = node.T_world @ limb.T_object_limb
-    vertices = np.concatenate([s.vertices for s in gathered.meshes[limb.mesh].surfaces]) * node.scale
-    handle, pull = handle_of(moving, vertices)
+    handle, pull = handle_of(moving, gathered.points_of(limb.mesh, node.scale))
     return {
         "name": body_name(node.slug, limb),
         "kind": limb.kind,
@@ -172,14 +168,7 @@ def handle_of(
 
 
 def _region(region: Region, level: float, walk: tuple[Polygon, ...], radius_m: float) -> dict[str, Any]:
-    """A region as JSON.
-
-    Args:
-        region: the surface.
-        level: height of the floor in the world.
-        walk: where the middle of a robot may be.
-        radius_m: of the robot.
-    """
+    """A region as JSON; `level` is the height of the floor, and the middle of a robot may be in `walk`."""
     height = float(region.polygon[:, 2].mean())
     spot = None if region.free.is_empty else free_spot(region.free)
     stand = standing_place(walk, region.free, radius_m, 0.0 if region.owner is None else REACH_M)

@@ -198,7 +198,7 @@ def _asset(mesh: ExportMesh, texture_files: TextureFiles) -> bytes:
     document = GltfDocument(generator="Diorama", texture_files=texture_files)
     index = document.add_mesh(mesh.name, tuple(_turn(s, R_SHAPE_FILE) for s in mesh.surfaces))
     node = document.add("nodes", {"name": mesh.name, "mesh": index})
-    document.set_scene(document.add("scenes", {"name": "scene", "nodes": [node]}))
+    document.set_scene("scene", node)
     return document.glb()
 
 

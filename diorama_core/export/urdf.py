@@ -17,9 +17,17 @@ from scipy.spatial.transform import Rotation
 
 from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.gathering import ExportMesh, ExportScene
-from diorama_core.export.links import Link, collider_file, group, visual_file, write_linked
+from diorama_core.export.links import (
+    Link,
+    collider_file,
+    group,
+    inertia_terms,
+    numbers,
+    srgb_rgba,
+    visual_file,
+    write_linked,
+)
 from diorama_core.export.physics import Inertia
-from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
 from diorama_core.progress import SILENT, Progress
 
 WORLD, POSES = "world", "poses.json"
