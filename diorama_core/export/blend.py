@@ -44,15 +44,10 @@ def write_blend(scene: ExportScene, path: Path, progress: Progress = SILENT) -> 
             job["photo"] = str(folder / "photo.png")
         progress.report(0.3, "opening the scene in Blender")
         run_in_blender(WORKER, job, name="Blender", progress=progress.part(0.3, 1.0))
-        check_whole(folder / "room.blend", path)
-        shutil.copyfile(folder / "room.blend", temporary)
-
-
-def check_whole(blend: Path, path: Path) -> None:
-    """Blender says nothing where a disk is too full for its file: the table at the end of a compressed one is missing.
-
-    Raises:
-        ExportError: the file, which was to become `path`, is not whole.
-    """
-    if not blend.is_file() or not blend.read_bytes().endswith(SEEK_TABLE_END):
-        raise ExportError(f"cannot write {path}: Blender's file is not whole; free some space or choose another disk")
+        blend = folder / "room.blend"
+        # Blender says nothing where a disk is full: the table at the end of a compressed file is missing.
+        if not blend.is_file() or not blend.read_bytes().endswith(SEEK_TABLE_END):
+            raise ExportError(
+                f"cannot write {path}: Blender's file is not whole; free some space or choose another disk"
+            )
+        shutil.copyfile(blend, temporary)

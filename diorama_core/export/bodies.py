@@ -91,6 +91,11 @@ class PhysicalScene:
     """What was decided that a reader of the file should know."""
 
 
+def place(T: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
+    """Points in the frame that a rigid transform leads to."""
+    return np.asarray(points @ T[:3, :3].T + T[:3, 3])
+
+
 def is_soft(node: ExportObject) -> bool:
     """Whether an object gives way where it lies."""
     return taxonomy.resolve(node.item.category).category.soft

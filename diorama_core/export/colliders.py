@@ -24,6 +24,7 @@ from diorama_core.export.bodies import (
     barriers,
     ground_piece,
     is_soft,
+    place,
     slab_pieces,
 )
 from diorama_core.export.gathering import ExportObject, ExportOptions, ExportScene, gather, rigid_inverse
@@ -109,7 +110,7 @@ def _resting(body: RigidBody, carrier: RigidBody | None) -> RigidBody:
     lowest, T = float(body.node.item.corners_world[:, 2].min()), rigid_inverse(body.node.T_world)
     lain = [drape(part, lowest, world_parts(carrier)) for part in world_parts(body)]
     pieces, held = ([p for some in each for p in some] for each in zip(*lain, strict=True))
-    rests = replace(body, parts=(*body.parts, *(_place(T, p) for p in pieces)))
+    rests = replace(body, parts=(*body.parts, *(place(T, p) for p in pieces)))
     return shift_centre_over(rests, np.concatenate(held)[:, :2]) if held else balance(body, carrier)
 
 
@@ -138,7 +139,7 @@ def shift_centre_over(body: RigidBody, outline: Float[np.ndarray, "n 2"]) -> Rig
     total = body.mass_kg + sum(m.inertia.mass_kg for m in body.moving)
     weighed = [
         (body.inertia.mass_kg, body.inertia.centre),
-        *((m.inertia.mass_kg, _place(m.limb.T_object_limb, m.inertia.centre)) for m in body.moving),
+        *((m.inertia.mass_kg, place(m.limb.T_object_limb, m.inertia.centre)) for m in body.moving),
     ]
     T = body.node.T_world
     centre = T[:3, :3] @ sum((m * c for m, c in weighed), np.zeros(3)) / total + T[:3, 3]
@@ -176,19 +177,15 @@ def _foot_parts(rug: RigidBody, riders: Iterable[RigidBody]) -> tuple[Points, ..
                 ends = [
                     np.column_stack([flat, np.full(len(flat), z)]) for z in (corners[:, 2].min(), corners[:, 2].max())
                 ]
-                parts_on_rugs.append(_place(rigid_inverse(rug.node.T_world), np.concatenate(ends)))
+                parts_on_rugs.append(place(rigid_inverse(rug.node.T_world), np.concatenate(ends)))
     return tuple(parts_on_rugs)
 
 
 def world_parts(body: RigidBody) -> list[Points]:
     """Corners of all convex bodies of an object in the world, those that its joints move as they stand."""
     T = body.node.T_world
-    moving = [_place(T @ m.limb.T_object_limb, q) for m in body.moving for q in m.parts]
-    return [*(_place(T, p) for p in body.parts), *moving]
-
-
-def _place(T: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
-    return np.asarray(points @ T[:3, :3].T + T[:3, 3])
+    moving = [place(T @ m.limb.T_object_limb, q) for m in body.moving for q in m.parts]
+    return [*(place(T, p) for p in body.parts), *moving]
 
 
 def _intersect(foot: Float[np.ndarray, "n 2"], top: Float[np.ndarray, "k 2"]) -> Float[np.ndarray, "m 2"]:
@@ -246,7 +243,7 @@ def joint_friction(limb: ExportLimb, inertia: Inertia, T_world: Float[np.ndarray
         return MIN_JOINT_FRICTION
     axis, R = T_world[:3, :3] @ limb.axis, T_world[:3, :3]
     weight = np.array([0.0, 0.0, -GRAVITY * inertia.mass_kg])
-    lever = R @ (_place(limb.T_object_limb, inertia.centre) - limb.origin)
+    lever = R @ (place(limb.T_object_limb, inertia.centre) - limb.origin)
     load = weight if limb.kind == "slide" else np.cross(lever, weight)
     return max(MIN_JOINT_FRICTION, HOLD * abs(float(axis @ load)))
 

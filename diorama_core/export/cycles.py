@@ -124,19 +124,11 @@ def cycles_radiance(
         library: Where its shapes are.
         outdoors: Sky and sun, and the holes in the walls that they come through.
         lens: Depth of field; None draws everything sharp.
-        textures: Pictures of the planes by `Plane.texture`.
-        samples: Paths per pixel before the denoiser.
-        seed: Of the paths.
-        timeout_s: When to give up.
-        progress: Told which sample it is at; a cancel ends Blender.
 
     Returns:
         Radiance, W/(m2 sr) in linear red, green and blue.
 
-    Raises:
-        UnavailableError: when Blender's module is not installed, or fails.
-        SceneError: when there is no camera.
-        Cancelled: when asked to stop.
+    The other arguments and what is raised are those of `cycles_picture`.
     """
     if scene.camera is None:
         raise SceneError("the scene has no camera; give it one")

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.export.bodies import MovingPart, Points, RigidBody, StaticSlab, hull_volume, is_soft
+from diorama_core.export.bodies import MovingPart, Points, RigidBody, StaticSlab, hull_volume, is_soft, place
 from diorama_core.geometry.convex import hull_part
 from diorama_core.geometry.sat import pack_parts, pair_axes, place_bodies
 from diorama_core.scene.frames import UP_WORLD
@@ -51,7 +51,7 @@ class Cuts:
                 for part in parts:
                     self._owners.append(body.node.id)
                     self._limbs.append(limb)
-                    self._world.append(part @ T[:3, :3].T + T[:3, 3])
+                    self._world.append(place(T, part))
         for slab in slabs:
             for piece in slab.pieces:
                 self._owners.append(None)

@@ -99,9 +99,8 @@ class StageMaterials:
             glow = self._texture(f"{path}/Emissive", material.maps["emissiveTexture"], st, colour=True, factor=factor)
             surface.CreateInput("emissiveColor", _COLOUR).ConnectToSource(glow.CreateOutput("rgb", _VECTOR))
         if "normalTexture" in material.maps:
-            bumps = self._texture(
-                f"{path}/Normal", material.maps["normalTexture"], st, colour=False, factor=(2.0, 2.0, 2.0, 1.0)
-            )
+            picture, factor = material.maps["normalTexture"], (2.0, 2.0, 2.0, 1.0)
+            bumps = self._texture(f"{path}/Normal", picture, st, colour=False, factor=factor)
             bumps.CreateInput("bias", Sdf.ValueTypeNames.Float4).Set(Gf.Vec4f(-1.0, -1.0, -1.0, 0.0))
             normal = surface.CreateInput("normal", Sdf.ValueTypeNames.Normal3f)
             normal.ConnectToSource(bumps.CreateOutput("rgb", _VECTOR))

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.export.gathering import gather
-from diorama_core.export.playground import Playground
-from diorama_core.export.stability import stability
+from diorama_core.export.stability import Playground, stability
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.primitives import PrimitiveLibrary, furnished_room
