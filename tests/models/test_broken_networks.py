@@ -18,11 +18,10 @@ from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.gigapose import GigaPoseScale
 from diorama_core.models.grounding import GroundingDino
-from diorama_core.models.hq_sam import HqSam
 from diorama_core.models.inpainting import Lama, Migan
 from diorama_core.models.owlv2 import Owlv2
 from diorama_core.models.runtime import NetworkError, SessionPool
-from diorama_core.models.segment_anything import Sam2, SlimSam
+from diorama_core.models.segment_anything import HqSam, Sam2, SlimSam
 from diorama_core.models.yolox import Yolox
 from tests.models import small_graphs
 from tests.models.tiny_networks import clip_tokenizer

@@ -18,11 +18,10 @@ from diorama_core.errors import UnavailableError
 from diorama_core.models.clip import DuoduoClip, OpenClip, clip_pixels
 from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
-from diorama_core.models.hq_sam import HqSam
 from diorama_core.models.inpainting import Lama, Migan
 from diorama_core.models.owlv2 import Owlv2
 from diorama_core.models.runtime import SessionPool
-from diorama_core.models.segment_anything import Sam2, SlimSam, sam3_tracker
+from diorama_core.models.segment_anything import HqSam, Sam2, SlimSam, sam3_tracker
 from tests.models import tiny_networks, tiny_sams
 
 
@@ -271,7 +270,7 @@ def test_mvanet_gives_the_same_probabilities(tmp_path: Path, photo: np.ndarray) 
         pixels = (stretched - [0.485, 0.456, 0.406]) / [0.229, 0.224, 0.225]
         logits = network(torch.from_numpy(pixels.transpose(2, 0, 1)[None]).float())
         expected = torch.nn.functional.interpolate(logits.sigmoid(), photo.shape[:2], mode="bilinear")[0, 0].numpy()
-    found = Foreground(graph, "mvanet", SessionPool()).probability(photo)
+    found = Foreground(graph, "mvanet", pool=SessionPool()).probability(photo)
     np.testing.assert_allclose(found, expected, atol=1e-4)
     assert np.ptp(expected) > 0.1
 
