@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import platformdirs
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
@@ -304,12 +304,13 @@ def _record(path: Path, written_ns: int, size: int) -> Installed:
     return _read(path, Installed)
 
 
-def _read(path: Path, kind: type[_Kept]) -> _Kept:
+def _read(path: Path, kind: Callable[[], _Kept]) -> _Kept:
     """What a file of the store holds; nothing where it is absent or damaged."""
     try:
-        return TypeAdapter(kind).validate_json(read_bytes(path, MAX_RECORD_BYTES, UnavailableError))
+        kept: _Kept = TypeAdapter[Any](kind).validate_json(read_bytes(path, MAX_RECORD_BYTES, UnavailableError))
     except (UnavailableError, ValidationError):
         return kind()
+    return kept
 
 
 @lru_cache(maxsize=256)

@@ -229,10 +229,10 @@ def test_openclip_embeds_the_same(tmp_path: Path, photo: np.ndarray) -> None:
     pixels = CLIPImageProcessorPil()(Image.fromarray(photo), return_tensors="pt")["pixel_values"]
     np.testing.assert_allclose(clip_pixels(photo), pixels.numpy(), atol=1e-5)
     with torch.no_grad():
-        seen = torch.nn.functional.normalize(tiny_networks._ClipImage(model)(pixels), dim=1)
+        seen = torch.nn.functional.normalize(tiny_networks.clip_image(model, pixels), dim=1)
         ids = torch.zeros(1, 77, dtype=torch.long)
         ids[0, :6] = torch.tensor([30, 2, 3, 4, 5, 31])
-        read = torch.nn.functional.normalize(tiny_networks._ClipText(model)(ids), dim=1)
+        read = torch.nn.functional.normalize(tiny_networks.clip_text(model, ids), dim=1)
     np.testing.assert_allclose(facade.images([photo]), seen.numpy(), atol=1e-4)
     np.testing.assert_allclose(facade.texts(["A  photo of CHAIR"]), read.numpy(), atol=1e-4)
     assert facade.texts([]).shape == (0, 512)
