@@ -30,8 +30,6 @@ FALLEN_M, TIPPED_DEG = 0.1, 30.0
 """What is lower by more has fallen off what it stood on; what tips farther does not come back."""
 PUSH_M_S = 1.5
 """Speed that a push gives an object, whatever its mass."""
-REST_M_S = 0.01
-"""Speeds below this are rest."""
 
 
 @dataclass(frozen=True)
@@ -200,11 +198,6 @@ class Playground:
     def seconds(self) -> float:
         """Simulated so far."""
         return float(self._data.time)
-
-    @property
-    def is_at_rest(self) -> bool:
-        """True if nothing moves."""
-        return bool(np.abs(self._data.qvel).max(initial=0.0) < REST_M_S)
 
     def step(self, seconds: float) -> None:
         """Let time go on."""
