@@ -125,9 +125,14 @@ def balance(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
 
 def _foot(body: RigidBody) -> tuple[Float[np.ndarray, "n 2"], float]:
     """What of a body lies near its lowest point, seen from above, and the height of that point."""
+    feet, low = _feet(body)
+    return np.concatenate([np.zeros((0, 2)), *feet]), low
+
+
+def _feet(body: RigidBody) -> tuple[list[Float[np.ndarray, "_ 2"]], float]:
     parts = world_parts(body)
     low = min((float(p[:, 2].min()) for p in parts), default=0.0)
-    return np.concatenate([np.zeros((0, 2)), *(p[p[:, 2] < low + FOOT_M][:, :2] for p in parts)]), low
+    return [p[p[:, 2] < low + FOOT_M][:, :2] for p in parts], low
 
 
 def shift_centre_over(body: RigidBody, outline: Float[np.ndarray, "n 2"]) -> RigidBody:
@@ -165,20 +170,12 @@ def is_sheet(node: ExportObject) -> bool:
 def _foot_parts(rug: RigidBody, riders: Iterable[RigidBody]) -> tuple[Points, ...]:
     """Pieces of a rug under the feet of what it carries. As a whole plate it would lift what stands over its edge, and
     a robot would push it; real ones give way under a foot and stay where they are."""
-    corners = rug.node.item.corners_world
-    parts_on_rugs = []
-    for rider in riders:
-        parts = world_parts(rider)
-        low = min((float(p[:, 2].min()) for p in parts), default=0.0)
-        for part in parts:
-            foot = part[part[:, 2] < low + FOOT_M][:, :2]
-            if len(foot):
-                flat = np.concatenate([foot + np.array([x, y]) for x in (-FOOT_M, FOOT_M) for y in (-FOOT_M, FOOT_M)])
-                ends = [
-                    np.column_stack([flat, np.full(len(flat), z)]) for z in (corners[:, 2].min(), corners[:, 2].max())
-                ]
-                parts_on_rugs.append(place(rigid_inverse(rug.node.T_world), np.concatenate(ends)))
-    return tuple(parts_on_rugs)
+    heights, pieces = rug.node.item.corners_world[:, 2], []
+    for foot in (foot for rider in riders for foot in _feet(rider)[0] if len(foot)):
+        flat = np.concatenate([foot + np.array(offset) for offset in itertools.product((-FOOT_M, FOOT_M), repeat=2)])
+        ends = [np.column_stack([flat, np.full(len(flat), z)]) for z in (heights.min(), heights.max())]
+        pieces.append(place(rigid_inverse(rug.node.T_world), np.concatenate(ends)))
+    return tuple(pieces)
 
 
 def world_parts(body: RigidBody) -> list[Points]:
@@ -202,10 +199,9 @@ def _shift_into_hull(outline: Float[np.ndarray, "n 2"], point: Float[np.ndarray,
         return np.zeros(2)
     middle = outline[hull.vertices].mean(axis=0)
     offsets = (hull.equations[:, :2] @ middle + hull.equations[:, 2]) * BALANCE_SHARE
-    inside = hull.equations[:, :2] @ (point - middle) + offsets
-    if inside.max() <= 0:
-        return np.zeros(2)
     reach = hull.equations[:, :2] @ (point - middle)
+    if (reach + offsets).max() <= 0:
+        return np.zeros(2)
     share = float(np.min(np.where(reach > 1e-12, -offsets / np.maximum(reach, 1e-12), np.inf)))
     return (middle + share * (point - middle)) - point
 

@@ -43,26 +43,25 @@ class Cuts:
         self._limbs: list[int | None] = []
         self._world: list[Points] = []
         self._frames: dict[tuple[str, int | None], Float[np.ndarray, "4 4"]] = {}
+        self._rows: dict[tuple[str | None, int | None], list[int]] = {}
         for body in bodies.values():
             rest = (None, body.node.T_world, body.parts)
             moving = [(m.limb.number, body.node.T_world @ m.limb.T_object_limb, m.parts) for m in body.moving]
             for limb, T, parts in (rest, *moving):
                 self._frames[body.node.id, limb] = T
                 for part in parts:
-                    self._owners.append(body.node.id)
-                    self._limbs.append(limb)
-                    self._world.append(place(T, part))
-        for slab in slabs:
-            for piece in slab.pieces:
-                self._owners.append(None)
-                self._limbs.append(None)
-                self._world.append(piece)
-        self._rows: dict[tuple[str | None, int | None], list[int]] = {}
-        for row, owner in enumerate(zip(self._owners, self._limbs, strict=True)):
-            self._rows.setdefault(owner, []).append(row)
+                    self._add(body.node.id, limb, place(T, part))
+        for piece in (piece for slab in slabs for piece in slab.pieces):
+            self._add(None, None, piece)
         self._deep: list[tuple[int, int]] = []
         self._pieces: dict[int, list[Points]] = {}
         self.sunk: dict[str, str | None] = {}
+
+    def _add(self, owner: str | None, limb: int | None, part: Points) -> None:
+        self._rows.setdefault((owner, limb), []).append(len(self._world))
+        self._owners.append(owner)
+        self._limbs.append(limb)
+        self._world.append(part)
 
     def parts(self, object_id: str, limb: int | None = None) -> tuple[Points, ...]:
         """The parts of an object, or of one of its limbs, that are left, in the frame of either."""

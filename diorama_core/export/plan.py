@@ -287,10 +287,9 @@ def _is_before_a_wall(piece: manifold3d.CrossSection, walls: Sequence[DrawnWall]
     points = np.concatenate([np.asarray(o) for o in piece.to_polygons()])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     for wall in walls:
-        foot = wall.point_at(float((middle - wall.start) @ wall.direction))
-        inside = 0.0 <= float((middle - wall.start) @ wall.direction) <= wall.length_m
-        before = float((middle - wall.start) @ wall.outward) < 0.0
-        if inside and before and not any(_crosses(middle, foot, w) for w in walls if w is not wall):
+        along, behind = (float((middle - wall.start) @ axis) for axis in (wall.direction, wall.outward))
+        is_ahead = 0.0 <= along <= wall.length_m and behind < 0.0
+        if is_ahead and not any(_crosses(middle, wall.point_at(along), w) for w in walls if w is not wall):
             return True
     return False
 

@@ -110,7 +110,7 @@ def _object(gathered: ExportScene, body: RigidBody) -> dict[str, Any]:
     """What a body is, for planners and for labels."""
     node, item = body.node, body.node.item
     mass = body.mass_kg + sum(m.inertia.mass_kg for m in body.moving)
-    sides = [float(v) for v in item.size_m]
+    narrowest = float(item.size_m.min())
     return {
         "body": node.slug,
         "id": node.id,
@@ -119,12 +119,12 @@ def _object(gathered: ExportScene, body: RigidBody) -> dict[str, Any]:
         "supporter": None if node.support is None else node.support.parent,
         "position_m": _round(node.T_world[:3, 3]),
         "rotation": _round(node.T_world[:3, :3], 6),
-        "size_m": _round(np.array(sides)),
+        "size_m": _round(item.size_m),
         "mass_kg": round(mass, 4),
         "friction": body.friction,
         "free": body.free,
-        "grasp_width_m": round(min(sides), 4),
-        "graspable": body.free and min(sides) <= MAX_GRASP_M and mass <= MAX_LIFT_KG,
+        "grasp_width_m": round(narrowest, 4),
+        "graspable": body.free and narrowest <= MAX_GRASP_M and mass <= MAX_LIFT_KG,
         "joints": [_joint(gathered, body, moving) for moving in body.moving],
     }
 
@@ -170,7 +170,10 @@ def handle_of(
 def _region(region: Region, level: float, walk: tuple[Polygon, ...], radius_m: float) -> dict[str, Any]:
     """A region as JSON; `level` is the height of the floor, and the middle of a robot may be in `walk`."""
     height = float(region.polygon[:, 2].mean())
-    spot = None if region.free.is_empty else free_spot(region.free)
+    spot = None
+    if not region.free.is_empty:
+        at, free_m = free_spot(region.free)
+        spot = {"position_m": _round(np.array([*at.coords[0], height])), "radius_m": round(free_m, 4)}
     stand = standing_place(walk, region.free, radius_m, 0.0 if region.owner is None else REACH_M)
     return {
         "name": region.name,
@@ -182,13 +185,9 @@ def _region(region: Region, level: float, walk: tuple[Polygon, ...], radius_m: f
         "clearance_m": None if np.isinf(region.clearance_m) else round(region.clearance_m, 4),
         "holds": list(region.holds),
         "free_m2": round(float(region.free.area), 4),
-        "free_spot": None if spot is None else _spot(spot[0].coords[0], height, spot[1]),
+        "free_spot": spot,
         "stand": None if stand is None else dict(zip(("x", "y", "yaw"), np.round(stand, 4).tolist(), strict=True)),
     }
-
-
-def _spot(at: tuple[float, ...], height: float, radius_m: float) -> dict[str, Any]:
-    return {"position_m": _round(np.array([*at, height])), "radius_m": round(radius_m, 4)}
 
 
 def _round(values: Float[np.ndarray, "..."], digits: int = 4) -> list:
