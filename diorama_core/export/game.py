@@ -23,7 +23,7 @@ from diorama_core.export.gathering import ExportObject, ExportScene, shift
 from diorama_core.export.gltf_document import GltfDocument, placement
 from diorama_core.export.lights import MainLight
 from diorama_core.export.palette import GameMaterials
-from diorama_core.export.sharing import used_part, with_vertices
+from diorama_core.export.sharing import without_unused, with_vertices
 from diorama_core.library.simplify import LARGEST_ERRORS, simplify
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Material, Surface
@@ -276,7 +276,7 @@ def collider_name(name: str, number: int, engine: str) -> str:
 
 def _lighter(surface: Surface, share: float, errors: tuple[float, ...]) -> Surface:
     triangles = np.ascontiguousarray(surface.faces.reshape(-1), dtype=np.uint32)
-    return used_part(surface, simplify(triangles, surface.vertices, share, errors, MAX_SHORTER))
+    return without_unused(surface, simplify(triangles, surface.vertices, share, errors, MAX_SHORTER))
 
 
 def _normals(surface: Surface, scale: Float[np.ndarray, "3"]) -> np.ndarray:

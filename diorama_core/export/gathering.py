@@ -359,8 +359,8 @@ class _Gatherer:
         grouped = {None: surfaces} if pieces is None else group_by_joint(surfaces)
         made = {}
         for number, surfaces in grouped.items():
-            moves = number is not None and pieces is not None
-            name = f"{item.shape_id} {pieces.joints[number].name}" if moves else item.shape_id
+            of_joint = "" if number is None or pieces is None else f" {pieces.joints[number].name}"
+            name = f"{item.shape_id}{of_joint}"
             made[number] = ExportMesh(self.labels.key(name), name, self.shared.surfaces(surfaces), item.shape_id)
         return made
 

@@ -195,7 +195,7 @@ class GltfDocument:
         """A view of the fallback buffer, which no file stores, with the compressed data that stand for it."""
         self.use(MESHOPT_EXTENSION, required=True)
         stride = values.itemsize * (values.shape[1] if values.ndim > 1 else 1)
-        packed = {"buffer": 0, "byteOffset": self._append(encoded), "byteLength": len(encoded)}
+        packed: dict[str, Any] = {"buffer": 0, "byteOffset": self._append(encoded), "byteLength": len(encoded)}
         packed |= {"byteStride": stride, "count": len(values), "mode": mode}
         entry: dict[str, Any] = {"buffer": 1, "byteOffset": self._decoded_bytes, "byteLength": values.nbytes}
         if mode == "ATTRIBUTES":

@@ -32,15 +32,19 @@ def picture_suffix(picture: Picture) -> str:
 
 def encode_picture(picture: Picture) -> bytes:
     """A picture's file: JPEG for large opaque ones, PNG for the others."""
-    return png_bytes(picture) if picture_suffix(picture) == ".png" else _encoded(picture, "JPEG", quality=JPEG_QUALITY)
+    return (
+        png_bytes(picture)
+        if picture_suffix(picture) == ".png"
+        else _file_content(picture, "JPEG", quality=JPEG_QUALITY)
+    )
 
 
 def png_bytes(picture: Picture) -> bytes:
     """A picture as PNG."""
-    return _encoded(picture, "PNG", compress_level=PNG_LEVEL)
+    return _file_content(picture, "PNG", compress_level=PNG_LEVEL)
 
 
-def _encoded(picture: Picture, form: str, **options: int) -> bytes:
+def _file_content(picture: Picture, form: str, **options: int) -> bytes:
     buffer = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(picture)).save(buffer, form, **options)
     return buffer.getvalue()
@@ -82,7 +86,7 @@ def texture_file(picture: Picture) -> tuple[str, bytes]:
 
 def photo_text(photo: Picture) -> str:
     """A photo as JPEG in base 64, for files that hold text only."""
-    return base64.b64encode(_encoded(photo, "JPEG", quality=JPEG_QUALITY)).decode("ascii")
+    return base64.b64encode(_file_content(photo, "JPEG", quality=JPEG_QUALITY)).decode("ascii")
 
 
 def shrink(picture: Picture, max_px: int | None) -> Picture:

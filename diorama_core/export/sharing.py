@@ -74,11 +74,11 @@ def without_slivers(surface: Surface) -> Surface:
     sound = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1) > MIN_AREA_M2
     if sound.all():
         return surface
-    return used_part(surface, surface.faces[sound])
+    return without_unused(surface, surface.faces[sound])
 
 
-def used_part(surface: Surface, faces: Integer[np.ndarray, "..."]) -> Surface:
-    """The vertices of a surface that some faces use, and these faces."""
+def without_unused(surface: Surface, faces: Integer[np.ndarray, "..."]) -> Surface:
+    """The surface with these faces alone, without the vertices that none of them uses."""
     return with_vertices(surface, *np.unique(faces, return_inverse=True))
 
 

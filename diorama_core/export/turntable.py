@@ -64,7 +64,7 @@ def write_turntable(
     if write is _write_mp4 and (size[0] % 2 or size[1] % 2):
         raise ExportError(f"a film of {size[0]}x{size[1]} cannot be made; both sides must be even")
 
-    def drawn() -> Iterator[Frame]:
+    def pictures() -> Iterator[Frame]:
         light = _steady_light(scene)
         for number, camera in enumerate(orbit_cameras(scene, frames, size)):
             progress.report(number / frames, f"frame {number + 1} of {frames}")
@@ -72,7 +72,7 @@ def write_turntable(
         progress.report(1.0, "finishing the film")
 
     with whole_file(path) as temporary:
-        write(drawn(), temporary)
+        write(pictures(), temporary)
 
 
 def orbit_cameras(scene: Scene, count: int, size: tuple[int, int]) -> tuple[Camera, ...]:

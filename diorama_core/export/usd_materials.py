@@ -230,7 +230,9 @@ def add_lights(stage: Usd.Stage, root: str, gathered: ExportScene) -> None:
         made.CreateNormalizeAttr(True)
         made.CreateColorAttr(Gf.Vec3f(*main.colour))
         place(made, main.T_world)
-    for number, position in enumerate(() if even is None else even.positions, 1):
+    if even is None:
+        return
+    for number, position in enumerate(even.positions, 1):
         nits = even.candela / (np.pi * EVEN_LIGHT_M**2)
         sphere = _sphere(stage, f"{root}/EvenLight{number}", EVEN_LIGHT_M, nits)
         sphere.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*(float(v) for v in position)))

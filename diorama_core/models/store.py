@@ -18,7 +18,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import platformdirs
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
@@ -307,7 +307,7 @@ def _record(path: Path, written_ns: int, size: int) -> Installed:
 def _read(path: Path, kind: Callable[[], _Kept]) -> _Kept:
     """What a file of the store holds; nothing where it is absent or damaged."""
     try:
-        kept: _Kept = TypeAdapter[Any](kind).validate_json(read_bytes(path, MAX_RECORD_BYTES, UnavailableError))
+        kept: _Kept = TypeAdapter(cast("Any", kind)).validate_json(read_bytes(path, MAX_RECORD_BYTES, UnavailableError))
     except (UnavailableError, ValidationError):
         return kind()
     return kept
