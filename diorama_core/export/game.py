@@ -23,7 +23,7 @@ from diorama_core.export.gathering import ExportObject, ExportScene, shift
 from diorama_core.export.gltf_document import GltfDocument, placement
 from diorama_core.export.lights import MainLight
 from diorama_core.export.palette import GameMaterials
-from diorama_core.export.sharing import without_unused, with_vertices
+from diorama_core.export.sharing import with_vertices, without_unused
 from diorama_core.library.simplify import LARGEST_ERRORS, simplify
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Material, Surface
