@@ -31,7 +31,6 @@ from PIL import Image
 from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_core.export import export_scene
 from diorama_core.export.blender import blender_python, missing_blender
-from diorama_core.export.environment import environment_of
 from diorama_core.export.gathering import ExportOptions, ExportScene, gather
 from diorama_core.export.stability import stability, urdf_model
 from diorama_core.geometry.openings import OPENING_CATEGORIES
@@ -40,6 +39,7 @@ from diorama_core.importing.opening import open_marked
 from diorama_core.importing.sweethome import parts_of_sweet_home
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.render.panorama import panorama
 from diorama_core.scene.schema import scene_to_json
 from diorama_core.scene.types import Scene
 from tests.export.validators import gltf_findings, usd_findings
@@ -184,7 +184,7 @@ def check_hdr(path: Path, gathered: ExportScene) -> list[str]:
     read = cv2.imread(str(path), cv2.IMREAD_ANYDEPTH | cv2.IMREAD_COLOR)
     if read is None or read.shape[1] != 2 * read.shape[0]:
         return ["no latitude-longitude map"]
-    off = float(np.abs(read[..., ::-1] - environment_of(gathered)).max())
+    off = float(np.abs(read[..., ::-1] - panorama(gathered.scene, gathered.library, textures=gathered.textures)).max())
     return [] if off <= 0.01 else [f"off by {off:.3f}"]
 
 

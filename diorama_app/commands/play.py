@@ -23,7 +23,7 @@ from diorama_core.scene import edits
 from diorama_core.scene.types import Pose, Scene
 
 if TYPE_CHECKING:
-    from diorama_core.export.playground import Playground  # the exports; the page opens without them
+    from diorama_core.export.stability import Playground  # the exports; the page opens without them
 
 SHOWN_EVERY_S = 1 / 15
 LONGEST_S = 120.0
@@ -59,7 +59,7 @@ def play(client: Client) -> None:
 
     def work(progress: Progress) -> None:
         from diorama_core.export.gathering import gather
-        from diorama_core.export.playground import Playground
+        from diorama_core.export.stability import Playground
 
         try:
             gathered = gather(game.start, session.library, progress=progress.part(0.0, 0.3))

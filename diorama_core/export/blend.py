@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from diorama_core.errors import ExportError
-from diorama_core.export.blender import run_in_blender
+from diorama_core.export.blender import WORKER, run_in_blender
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.gltf import write_gathered
@@ -24,16 +24,10 @@ SEEK_TABLE_END = bytes.fromhex("b1ea928f")
 
 
 def write_blend(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write a `.blend` with everything in it, whole or not at all.
+    """Write a `.blend` with everything in it, as `Writer` says; raises `UnavailableError` where Blender fails.
 
     Objects are parented to their supporters and keep their custom properties; the photo lies behind the camera's view.
-
-    Raises:
-        ExportError: when it cannot be written.
-        UnavailableError: Blender is missing or fails.
-        Cancelled: when asked to stop; what was there stays.
     """
-    worker = Path(__file__).with_name("blend_worker.py")
     with whole_file(Path(path)) as temporary, tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         plain = replace(scene, options=replace(scene.options, compression="none"))
@@ -49,16 +43,11 @@ def write_blend(scene: ExportScene, path: Path, progress: Progress = SILENT) -> 
             Image.fromarray(np.ascontiguousarray(scene.photo)).save(folder / "photo.png")
             job["photo"] = str(folder / "photo.png")
         progress.report(0.3, "opening the scene in Blender")
-        run_in_blender(worker, job, name="Blender", progress=progress.part(0.3, 1.0))
-        check_whole(folder / "room.blend", path)
-        shutil.copyfile(folder / "room.blend", temporary)
-
-
-def check_whole(blend: Path, path: Path) -> None:
-    """Blender says nothing where a disk is too full for its file: the table at the end of a compressed one is missing.
-
-    Raises:
-        ExportError: the file, which was to become `path`, is not whole.
-    """
-    if not blend.is_file() or not blend.read_bytes().endswith(SEEK_TABLE_END):
-        raise ExportError(f"cannot write {path}: Blender's file is not whole; free some space or choose another disk")
+        run_in_blender(WORKER, job, name="Blender", progress=progress.part(0.3, 1.0))
+        blend = folder / "room.blend"
+        # Blender says nothing where a disk is full: the table at the end of a compressed file is missing.
+        if not blend.is_file() or not blend.read_bytes().endswith(SEEK_TABLE_END):
+            raise ExportError(
+                f"cannot write {path}: Blender's file is not whole; free some space or choose another disk"
+            )
+        shutil.copyfile(blend, temporary)

@@ -30,6 +30,8 @@ INSTALL = (
 )
 REPORT = "diorama "
 """Start of the lines in which a worker reports: this, a fraction, a space and a message."""
+WORKER = Path(__file__).with_name("blender_worker.py")
+"""Saves and renders; what a job is told says which."""
 _GLANCE_S = 0.2
 """How often a cancel is looked for."""
 

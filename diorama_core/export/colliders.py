@@ -15,12 +15,22 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, StaticSlab, is_soft
+from diorama_core.export.bodies import (
+    MovingPart,
+    PhysicalScene,
+    Points,
+    RigidBody,
+    StaticSlab,
+    barriers,
+    ground_piece,
+    is_soft,
+    place,
+    slab_pieces,
+)
 from diorama_core.export.gathering import ExportObject, ExportOptions, ExportScene, gather, rigid_inverse
 from diorama_core.export.limbs import ExportLimb, limb_parts
 from diorama_core.export.overlaps import Cuts, cut, drape
 from diorama_core.export.physics import GRAVITY, Inertia, friction_of, inertia_of, plausible_mass_kg
-from diorama_core.export.slabs import barriers, ground_piece, slab_pieces
 from diorama_core.geometry.convex import ConvexPart
 from diorama_core.layout.problem.parts import parts_of_shape
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
@@ -100,7 +110,7 @@ def _resting(body: RigidBody, carrier: RigidBody | None) -> RigidBody:
     lowest, T = float(body.node.item.corners_world[:, 2].min()), rigid_inverse(body.node.T_world)
     lain = [drape(part, lowest, world_parts(carrier)) for part in world_parts(body)]
     pieces, held = ([p for some in each for p in some] for each in zip(*lain, strict=True))
-    rests = replace(body, parts=(*body.parts, *(_place(T, p) for p in pieces)))
+    rests = replace(body, parts=(*body.parts, *(place(T, p) for p in pieces)))
     return shift_centre_over(rests, np.concatenate(held)[:, :2]) if held else balance(body, carrier)
 
 
@@ -115,9 +125,14 @@ def balance(body: RigidBody, carrier: RigidBody | None = None) -> RigidBody:
 
 def _foot(body: RigidBody) -> tuple[Float[np.ndarray, "n 2"], float]:
     """What of a body lies near its lowest point, seen from above, and the height of that point."""
+    feet, low = _feet(body)
+    return np.concatenate([np.zeros((0, 2)), *feet]), low
+
+
+def _feet(body: RigidBody) -> tuple[list[Float[np.ndarray, "_ 2"]], float]:
     parts = world_parts(body)
     low = min((float(p[:, 2].min()) for p in parts), default=0.0)
-    return np.concatenate([np.zeros((0, 2)), *(p[p[:, 2] < low + FOOT_M][:, :2] for p in parts)]), low
+    return [p[p[:, 2] < low + FOOT_M][:, :2] for p in parts], low
 
 
 def shift_centre_over(body: RigidBody, outline: Float[np.ndarray, "n 2"]) -> RigidBody:
@@ -129,7 +144,7 @@ def shift_centre_over(body: RigidBody, outline: Float[np.ndarray, "n 2"]) -> Rig
     total = body.mass_kg + sum(m.inertia.mass_kg for m in body.moving)
     weighed = [
         (body.inertia.mass_kg, body.inertia.centre),
-        *((m.inertia.mass_kg, _place(m.limb.T_object_limb, m.inertia.centre)) for m in body.moving),
+        *((m.inertia.mass_kg, place(m.limb.T_object_limb, m.inertia.centre)) for m in body.moving),
     ]
     T = body.node.T_world
     centre = T[:3, :3] @ sum((m * c for m, c in weighed), np.zeros(3)) / total + T[:3, 3]
@@ -155,31 +170,19 @@ def is_sheet(node: ExportObject) -> bool:
 def _foot_parts(rug: RigidBody, riders: Iterable[RigidBody]) -> tuple[Points, ...]:
     """Pieces of a rug under the feet of what it carries. As a whole plate it would lift what stands over its edge, and
     a robot would push it; real ones give way under a foot and stay where they are."""
-    corners = rug.node.item.corners_world
-    parts_on_rugs = []
-    for rider in riders:
-        parts = world_parts(rider)
-        low = min((float(p[:, 2].min()) for p in parts), default=0.0)
-        for part in parts:
-            foot = part[part[:, 2] < low + FOOT_M][:, :2]
-            if len(foot):
-                flat = np.concatenate([foot + np.array([x, y]) for x in (-FOOT_M, FOOT_M) for y in (-FOOT_M, FOOT_M)])
-                ends = [
-                    np.column_stack([flat, np.full(len(flat), z)]) for z in (corners[:, 2].min(), corners[:, 2].max())
-                ]
-                parts_on_rugs.append(_place(rigid_inverse(rug.node.T_world), np.concatenate(ends)))
-    return tuple(parts_on_rugs)
+    heights, pieces = rug.node.item.corners_world[:, 2], []
+    for foot in (foot for rider in riders for foot in _feet(rider)[0] if len(foot)):
+        flat = np.concatenate([foot + np.array(offset) for offset in itertools.product((-FOOT_M, FOOT_M), repeat=2)])
+        ends = [np.column_stack([flat, np.full(len(flat), z)]) for z in (heights.min(), heights.max())]
+        pieces.append(place(rigid_inverse(rug.node.T_world), np.concatenate(ends)))
+    return tuple(pieces)
 
 
 def world_parts(body: RigidBody) -> list[Points]:
     """Corners of all convex bodies of an object in the world, those that its joints move as they stand."""
     T = body.node.T_world
-    moving = [_place(T @ m.limb.T_object_limb, q) for m in body.moving for q in m.parts]
-    return [*(_place(T, p) for p in body.parts), *moving]
-
-
-def _place(T: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
-    return np.asarray(points @ T[:3, :3].T + T[:3, 3])
+    moving = [place(T @ m.limb.T_object_limb, q) for m in body.moving for q in m.parts]
+    return [*(place(T, p) for p in body.parts), *moving]
 
 
 def _intersect(foot: Float[np.ndarray, "n 2"], top: Float[np.ndarray, "k 2"]) -> Float[np.ndarray, "m 2"]:
@@ -196,10 +199,9 @@ def _shift_into_hull(outline: Float[np.ndarray, "n 2"], point: Float[np.ndarray,
         return np.zeros(2)
     middle = outline[hull.vertices].mean(axis=0)
     offsets = (hull.equations[:, :2] @ middle + hull.equations[:, 2]) * BALANCE_SHARE
-    inside = hull.equations[:, :2] @ (point - middle) + offsets
-    if inside.max() <= 0:
-        return np.zeros(2)
     reach = hull.equations[:, :2] @ (point - middle)
+    if (reach + offsets).max() <= 0:
+        return np.zeros(2)
     share = float(np.min(np.where(reach > 1e-12, -offsets / np.maximum(reach, 1e-12), np.inf)))
     return (middle + share * (point - middle)) - point
 
@@ -237,7 +239,7 @@ def joint_friction(limb: ExportLimb, inertia: Inertia, T_world: Float[np.ndarray
         return MIN_JOINT_FRICTION
     axis, R = T_world[:3, :3] @ limb.axis, T_world[:3, :3]
     weight = np.array([0.0, 0.0, -GRAVITY * inertia.mass_kg])
-    lever = R @ (_place(limb.T_object_limb, inertia.centre) - limb.origin)
+    lever = R @ (place(limb.T_object_limb, inertia.centre) - limb.origin)
     load = weight if limb.kind == "slide" else np.cross(lever, weight)
     return max(MIN_JOINT_FRICTION, HOLD * abs(float(axis @ load)))
 
@@ -297,9 +299,8 @@ def _carrier(gathered: ExportScene, node: ExportObject) -> str | None:
         return node.parent
     if support is not None:
         return node.parent if support.relation == "mounted on" else _STANDING
-    floor = gathered.scene.architecture.floor
-    height = 0.0 if floor is None else float(floor.centre[2])
-    return _STANDING if abs(float(node.item.corners_world[:, 2].min()) - height) < NEAR_FLOOR_M else None
+    standing = abs(float(node.item.corners_world[:, 2].min()) - gathered.floor_m) < NEAR_FLOOR_M
+    return _STANDING if standing else None
 
 
 def _weld(body: RigidBody, carrier: str | None) -> RigidBody:

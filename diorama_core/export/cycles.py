@@ -13,7 +13,7 @@ from jaxtyping import Float, UInt8
 from PIL import Image
 
 from diorama_core.errors import SceneError
-from diorama_core.export.blender import blender_python, run_in_blender
+from diorama_core.export.blender import WORKER, blender_python, run_in_blender
 from diorama_core.export.gathering import ExportOptions
 from diorama_core.export.gltf import write_glb
 from diorama_core.export.pictures import Picture
@@ -100,7 +100,7 @@ def cycles_picture(
         folder = Path(name)
         job = _job(seen, library, folder, textures, samples, seed)
         job |= {"png": str(folder / "room.png"), "lights": room_lights(scene)}
-        _trace(job, progress, timeout_s)
+        run_in_blender(WORKER, job, name="Cycles", progress=progress, timeout_s=timeout_s)
         with Image.open(folder / "room.png", formats=("PNG",)) as drawn:
             return np.asarray(drawn.convert("RGB"))
 
@@ -124,19 +124,11 @@ def cycles_radiance(
         library: Where its shapes are.
         outdoors: Sky and sun, and the holes in the walls that they come through.
         lens: Depth of field; None draws everything sharp.
-        textures: Pictures of the planes by `Plane.texture`.
-        samples: Paths per pixel before the denoiser.
-        seed: Of the paths.
-        timeout_s: When to give up.
-        progress: Told which sample it is at; a cancel ends Blender.
 
     Returns:
         Radiance, W/(m2 sr) in linear red, green and blue.
 
-    Raises:
-        UnavailableError: when Blender's module is not installed, or fails.
-        SceneError: when there is no camera.
-        Cancelled: when asked to stop.
+    The other arguments and what is raised are those of `cycles_picture`.
     """
     if scene.camera is None:
         raise SceneError("the scene has no camera; give it one")
@@ -152,7 +144,7 @@ def cycles_radiance(
         }  # fmt: skip
         if lens is not None:
             job["lens"] = {"focus_m": lens.focus_m, "aperture_m": lens.aperture_m}
-        _trace(job, progress, timeout_s)
+        run_in_blender(WORKER, job, name="Cycles", progress=progress, timeout_s=timeout_s)
         return np.load(folder / "room.npy")
 
 
@@ -173,11 +165,6 @@ def _job(
         "glb": str(folder / "room.glb"), "width": k.width, "height": k.height,
         "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy, "samples": samples, "seed": seed,
     }  # fmt: skip
-
-
-def _trace(job: Mapping[str, Any], progress: Progress, timeout_s: float) -> None:
-    worker = Path(__file__).with_name("cycles_worker.py")
-    run_in_blender(worker, job, name="Cycles", progress=progress, timeout_s=timeout_s)
 
 
 def _portal(opening: LightPortal) -> dict[str, object]:

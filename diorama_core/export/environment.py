@@ -6,7 +6,6 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from jaxtyping import Float32
 
 from diorama_core.errors import ExportError
 from diorama_core.export.files import write_whole
@@ -15,23 +14,9 @@ from diorama_core.progress import SILENT, Progress
 from diorama_core.render.panorama import panorama
 
 
-def environment_of(gathered: ExportScene, progress: Progress = SILENT) -> Float32[np.ndarray, "h w 3"]:
-    """Linear radiance that comes to the middle of the room (`render.panorama`), in the colour of its light.
-
-    Raises:
-        Cancelled: when asked to stop.
-    """
-    return panorama(gathered.scene, gathered.library, textures=gathered.textures, progress=progress)
-
-
 def write_hdr(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write a Radiance picture, whole or not at all.
-
-    Raises:
-        ExportError: when it cannot be written.
-        Cancelled: when asked to stop; what was there stays.
-    """
-    radiance = environment_of(gathered, progress)
+    """Write the radiance that comes to the middle of the room (`render.panorama`), as `Writer` says."""
+    radiance = panorama(gathered.scene, gathered.library, textures=gathered.textures, progress=progress)
     good, content = cv2.imencode(".hdr", np.ascontiguousarray(radiance[..., ::-1]))
     if not good:
         raise ExportError(f"cannot write {path}: the picture could not be encoded")

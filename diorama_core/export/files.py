@@ -47,7 +47,8 @@ def whole_file(path: Path, suffix: str | None = None) -> Iterator[Path]:
         os.close(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))  # the umask decides
         temporary = beside
         yield temporary
-        _settle(temporary)
+        with temporary.open("rb") as file:
+            os.fsync(file.fileno())
         os.replace(temporary, path)
     except OSError as error:
         raise _cannot_write(path, error) from error
@@ -122,11 +123,6 @@ def _remove_leftovers(folder: Path) -> None:
         with suppress(OSError):
             if time.time() - left.stat().st_mtime > LEFTOVER_S:
                 shutil.rmtree(left) if left.is_dir() else left.unlink()
-
-
-def _settle(path: Path) -> None:
-    with path.open("rb") as file:
-        os.fsync(file.fileno())
 
 
 def _cannot_write(path: Path, error: OSError) -> ExportError:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Writer(Protocol):
-    """Writes a gathered scene, whole or not at all; raises `ExportError` when it cannot."""
+    """Writes a gathered scene whole, or raises `ExportError` or, when asked to stop, `Cancelled`."""
 
     def __call__(self, gathered: ExportScene, path: Path, progress: Progress) -> None:
         """Write to `path`, replacing what is there only when all went well."""
@@ -107,8 +107,8 @@ _TABLE = (
         joints=True,
         texture_px=1024,
     ),
-    Format("usda", "USD text", (".usda",), _USD_KEEPS, "usd:write_usda", "usd", "pxr", joints=True),
-    Format("usdc", "USD binary", (".usdc",), _USD_KEEPS, "usd:write_usdc", "usd", "pxr", joints=True),
+    Format("usda", "USD text", (".usda",), _USD_KEEPS, "usd:write_layer", "usd", "pxr", joints=True),
+    Format("usdc", "USD binary", (".usdc",), _USD_KEEPS, "usd:write_layer", "usd", "pxr", joints=True),
     Format("usdz", "USD package for AR", (".usdz",), _USD_KEEPS, "usd:write_usdz", "usd", "pxr", joints=True),
     Format("mjcf", "MuJoCo", (".xml", ".zip"), _SIM_KEEPS, "mjcf:write_mjcf", joints=True),
     Format("urdf", "URDF (ROS, PyBullet, Isaac)", (".urdf", ".zip"), _SIM_KEEPS, "urdf:write_urdf", joints=True),

@@ -7,7 +7,7 @@ picture and share one material. Levels of detail are nodes outside the scene, as
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,16 +15,15 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.errors import ExportError
+from diorama_core.errors import ExportError, UnavailableError
 from diorama_core.export.bodies import PhysicalScene, Points, RigidBody, hull_faces
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import whole_file
-from diorama_core.export.gathering import ExportObject, ExportScene
-from diorama_core.export.gltf import placement
-from diorama_core.export.gltf_document import GltfDocument
+from diorama_core.export.gathering import ExportObject, ExportScene, shift
+from diorama_core.export.gltf_document import GltfDocument, placement
 from diorama_core.export.lights import MainLight
 from diorama_core.export.palette import GameMaterials
-from diorama_core.export.unwrapping import unwrap
+from diorama_core.export.sharing import with_vertices, without_unused
 from diorama_core.library.simplify import LARGEST_ERRORS, simplify
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Material, Surface
@@ -79,7 +78,7 @@ class _Builder:
             nodes.append(self._object(body, self._share(body.node, budget)))
         nodes += self._lights()
         root = self._document.add("nodes", {"name": "diorama", **({"children": nodes} if nodes else {})})
-        self._document.set_scene(self._document.add("scenes", {"name": self._gathered.name, "nodes": [root]}))
+        self._document.set_scene(self._gathered.name, root)
         return self._document
 
     def _triangles(self, item: ExportObject, share: float = 1.0) -> int:
@@ -124,10 +123,10 @@ class _Builder:
     def _object(self, body: RigidBody, share: float) -> int:
         """An object above the middle of its foot, its moving parts below it, with a share of their triangles."""
         item, name = body.node, body.node.name
-        foot = _shift(np.array([0.0, 0.0, -0.5 * item.item.size_m[2]]))
+        foot = shift(np.array([0.0, 0.0, -0.5 * item.item.size_m[2]]))
         limbs = []
         for moving in body.moving:
-            limb, hinge = moving.limb, _shift(moving.limb.origin)
+            limb, hinge = moving.limb, shift(moving.limb.origin)
             about: dict[str, Any] = {
                 "joint": limb.kind,
                 "axis": [float(v) for v in FRONT_Z[:3, :3] @ limb.axis],
@@ -243,10 +242,31 @@ class _Builder:
                 about |= {"type": "directional", "intensity": light.lux * self._gathered.strength(light)}
             else:
                 about |= {"type": "point", "intensity": light.candela * self._gathered.strength(light)}
-            extension = {"KHR_lights_punctual": {"light": self._document.add_light(about)}}
-            node = {"name": f"light {len(nodes) + 1}", **placement(Y_UP @ light.T_world), "extensions": extension}
-            nodes.append(self._document.add("nodes", node))
+            index, name = self._document.add_light(about), f"light {len(nodes) + 1}"
+            nodes.append(self._document.add_light_node(name, index, Y_UP @ light.T_world))
         return nodes
+
+
+def unwrap(surfaces: Sequence[Surface]) -> Iterator[Surface]:
+    """The surfaces of one mesh with `light_uv` for light that an engine bakes: all in one square from 0 to 1, no two
+    triangles on each other; vertices are split at seams.
+
+    Raises:
+        UnavailableError: xatlas is not installed.
+    """
+    try:
+        import xatlas
+    except ImportError as missing:
+        raise UnavailableError("coordinates for baked light need xatlas: pip install 'diorama[game]'") from missing
+    starts = np.cumsum([0, *(len(s.vertices) for s in surfaces)])
+    faces = np.concatenate([s.faces + start for s, start in zip(surfaces, starts, strict=False)])
+    positions = np.concatenate([s.vertices for s in surfaces])
+    original, split, uv = xatlas.parametrize(positions, faces.astype(np.uint32))
+    rows = np.split(split.astype(np.int64), np.cumsum([len(s.faces) for s in surfaces])[:-1])
+    for surface, start, triangles in zip(surfaces, starts, rows, strict=False):
+        used, corners = np.unique(triangles, return_inverse=True)
+        rows_before = original[used].astype(np.int64) - start
+        yield replace(with_vertices(surface, rows_before, corners), light_uv=uv[used])
 
 
 def collider_name(name: str, number: int, engine: str) -> str:
@@ -256,17 +276,7 @@ def collider_name(name: str, number: int, engine: str) -> str:
 
 def _lighter(surface: Surface, share: float, errors: tuple[float, ...]) -> Surface:
     triangles = np.ascontiguousarray(surface.faces.reshape(-1), dtype=np.uint32)
-    fewer = simplify(triangles, surface.vertices, share, errors, MAX_SHORTER)
-    used, faces = np.unique(fewer, return_inverse=True)
-    uv, colours = surface.uv, surface.colours
-    return replace(
-        surface,
-        vertices=surface.vertices[used],
-        normals=surface.normals[used],
-        faces=faces.reshape(-1, 3).astype(np.int32),
-        uv=None if uv is None else uv[used],
-        colours=None if colours is None else colours[used],
-    )
+    return without_unused(surface, simplify(triangles, surface.vertices, share, errors, MAX_SHORTER))
 
 
 def _normals(surface: Surface, scale: Float[np.ndarray, "3"]) -> np.ndarray:
@@ -283,12 +293,6 @@ def _outward(corners: Points) -> Points:
     """Directions from the middle: colliders are not seen, but each vertex needs a normal."""
     away = corners - corners.mean(axis=0)
     return away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
-
-
-def _shift(offset: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4 4"]:
-    T = np.eye(4)
-    T[:3, 3] = offset
-    return T
 
 
 def _count(surfaces: Iterable[Surface]) -> int:

@@ -7,8 +7,8 @@ library for what an object looks like; colliders come from `diorama_core.export.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Set
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
@@ -18,10 +18,8 @@ from jaxtyping import Float
 from diorama_core.export.door_swings import door_swings, opening_out
 from diorama_core.export.lights import EvenLight, ExportLight, MainLight, even_light_of, lights_of, main_light_of
 from diorama_core.export.limbs import ExportLimb, OneShape, group_by_joint, limb_of
-from diorama_core.export.names import Labels
-from diorama_core.export.photo_textures import MAX_PHOTO_TEXTURES_PX, fit_pictures
-from diorama_core.export.pictures import Picture, photo_text
-from diorama_core.export.sharing import SharedAppearance
+from diorama_core.export.pictures import MAX_PHOTO_TEXTURES_PX, Picture, fit_pictures, photo_text
+from diorama_core.export.sharing import Labels, SharedAppearance
 from diorama_core.geometry.openings import with_openings
 from diorama_core.geometry.rooms import rooms_of_objects, rooms_of_planes
 from diorama_core.io.text import clean_text
@@ -173,6 +171,10 @@ class ExportScene:
             below[item.parent] = (*below.get(item.parent, ()), item)
         return below
 
+    def lights_of(self, object_id: str) -> list[ExportLight]:
+        """The lights of an object."""
+        return [light for light in self.lights if light.owner == object_id]
+
     @cached_property
     def main_light(self) -> MainLight | None:
         """The photo's main light; None where it tells none, and where the room is not written."""
@@ -188,6 +190,12 @@ class ExportScene:
     def room_of(self) -> Mapping[str, HomeRoom]:
         """The room of each plane and object of a home, by their ids."""
         return _rooms_by_id(self.scene)
+
+    @property
+    def floor_m(self) -> float:
+        """Height of the floor in the world; 0 without one."""
+        floor = self.scene.architecture.floor
+        return 0.0 if floor is None else float(floor.centre[2])
 
     @property
     def _room_is_lit(self) -> bool:
@@ -209,6 +217,10 @@ class ExportScene:
     def children_of(self, parent: str | None) -> tuple[ExportObject, ...]:
         """Exported objects directly below an object, or below the root."""
         return self._objects_by_parent.get(parent, ())
+
+    def points_of(self, mesh: str, scale: Float[np.ndarray, "3"]) -> Float[np.ndarray, "n 3"]:
+        """All vertices of a mesh at a scale."""
+        return np.concatenate([s.vertices for s in self.meshes[mesh].surfaces]) * scale
 
     def T_parent(self, item: ExportObject) -> Float[np.ndarray, "4 4"]:
         """The object's rigid transform in the frame of the object that carries it, or in the world."""
@@ -248,9 +260,9 @@ def gather(
     textures = fit_pictures(scene, textures or {}, options.max_photo_textures_px)
     slugs = {r.id: (f"storey_{r.storey}", labels.slug(r.name)) for r in scene.rooms}
     groups = {name: slugs[room.id] for name, room in _rooms_by_id(scene).items()}
-    planes, meshes = _planes(scene, options, textures, shared, labels)
-    planes = [replace(p, group=groups.get(p.id, ())) for p in planes]
     shown = {o.id for o in scene.objects if not o.hidden and (options.only is None or o.id in options.only)}
+    gatherer = _Gatherer(scene, library, options, textures, shared, labels, groups, shown)
+    planes, meshes = gatherer.planes()
     order = [scene.object(i) for i in top_down(scene) if i in shown]
     painted: dict[tuple[object, ...], dict[int | None, str]] = {}
     swings = door_swings(order, lambda i: articulation_of(library, i)) if options.joints else {}
@@ -260,12 +272,11 @@ def gather(
         scale = relative_scale(item.pose.scale)
         paint = (item.shape_id, item.colour, item.finish, item.visible_materials, scale, item.open_share)
         if paint not in painted:
-            made = _shape_meshes(library, item, options, textures, shared, labels)
+            made = gatherer.shape_meshes(item)
             painted[paint] = {number: mesh.key for number, mesh in made.items()}
             meshes |= {mesh.key: mesh for mesh in made.values()}
         outward = item.id in swings and swings[item.id].outward
-        node = _node(scene, library, item, painted[paint], shown, labels, outward=outward)
-        objects.append(replace(node, group=groups.get(item.id, ())))
+        objects.append(gatherer.node(item, painted[paint], outward=outward))
     lit = [] if options.lights == "none" else [o.item for o in objects]
     return ExportScene(
         name=clean_text(name),
@@ -284,6 +295,18 @@ def gather(
     )
 
 
+def T_world_lens(camera: Camera) -> Float[np.ndarray, "4 4"]:
+    """Where a camera is that looks along its -z with y up, as glTF, USD and MuJoCo have it; ours looks along +z."""
+    return camera.T_world_camera @ np.diag([1.0, -1.0, -1.0, 1.0])
+
+
+def shift(offset: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4 4"]:
+    """A translation."""
+    out = np.eye(4)
+    out[:3, 3] = offset
+    return out
+
+
 def rigid_inverse(T: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "4 4"]:
     """Inverse of a rotation with a translation."""
     out = np.eye(4)
@@ -296,71 +319,69 @@ def _rooms_by_id(scene: Scene) -> dict[str, HomeRoom]:
     return {name: rooms[room] for name, room in {**rooms_of_planes(scene), **rooms_of_objects(scene)}.items()}
 
 
-def _planes(
-    scene: Scene, options: ExportOptions, textures: Mapping[str, Picture], shared: SharedAppearance, labels: Labels
-) -> tuple[list[ExportPlane], dict[str, ExportMesh]]:
-    planes, meshes = [], {}
-    for plane in with_openings(scene).architecture.planes if options.only is None else ():
-        if plane.role == "ceiling" and not options.ceiling:
-            continue
-        picture = textures.get(plane.texture) if plane.texture else None
-        surfaces = shared.surfaces(plane_surfaces(plane, picture))
-        name = plane.role if plane.id == plane.role else f"{plane.role} {plane.id}"
-        mesh = ExportMesh(labels.key(f"plane_{plane.id}"), plane.id, surfaces)
-        meshes[mesh.key] = mesh
-        planes.append(ExportPlane(plane.id, labels.name(name), labels.slug(name), mesh.key, plane))
-    return planes, meshes
+@dataclass(frozen=True)
+class _Gatherer:
+    """What the parts of a scene are gathered with."""
 
+    scene: Scene
+    library: ShapeLibrary
+    options: ExportOptions
+    textures: Mapping[str, Picture]
+    shared: SharedAppearance
+    labels: Labels
+    groups: Mapping[str, tuple[str, ...]]
+    shown: Set[str]
+    """Ids of the objects that are written."""
 
-def _shape_meshes(
-    library: ShapeLibrary,
-    item: SceneObject,
-    options: ExportOptions,
-    textures: Mapping[str, Picture],
-    shared: SharedAppearance,
-    labels: Labels,
-) -> dict[int | None, ExportMesh]:
-    """The shape's mesh under None; with joints, what each of them moves under its number."""
-    pieces = articulation_of(library, item.shape_id) if options.joints else None
-    scale = relative_scale(item.pose.scale)
-    as_it_stands: PartsSource = library if item.open_share == 0.0 else OpenedShapes(library, item.open_share, scale)
-    shown = as_it_stands if pieces is None else OneShape(pieces)
-    paint = (item.colour, item.finish, item.visible_materials)
-    surfaces = shape_surfaces(shown, item.shape_id, *paint, textures, scale)
-    grouped = {None: surfaces} if pieces is None else group_by_joint(surfaces)
-    made = {}
-    for number, surfaces in grouped.items():
-        name = item.shape_id if number is None or pieces is None else f"{item.shape_id} {pieces.joints[number].name}"
-        made[number] = ExportMesh(labels.key(name), name, shared.surfaces(surfaces), item.shape_id)
-    return made
+    def planes(self) -> tuple[list[ExportPlane], dict[str, ExportMesh]]:
+        planes, meshes, labels = [], {}, self.labels
+        for plane in with_openings(self.scene).architecture.planes if self.options.only is None else ():
+            if plane.role == "ceiling" and not self.options.ceiling:
+                continue
+            picture = self.textures.get(plane.texture) if plane.texture else None
+            surfaces = self.shared.surfaces(plane_surfaces(plane, picture))
+            name = plane.role if plane.id == plane.role else f"{plane.role} {plane.id}"
+            mesh = ExportMesh(labels.key(f"plane_{plane.id}"), plane.id, surfaces)
+            meshes[mesh.key] = mesh
+            named, slug = labels.name(name), labels.slug(name)
+            planes.append(ExportPlane(plane.id, named, slug, mesh.key, plane, self.groups.get(plane.id, ())))
+        return planes, meshes
 
+    def shape_meshes(self, item: SceneObject) -> dict[int | None, ExportMesh]:
+        """The shape's mesh under None; with joints, what each of them moves under its number."""
+        pieces = articulation_of(self.library, item.shape_id) if self.options.joints else None
+        scale = relative_scale(item.pose.scale)
+        opened = item.open_share != 0.0
+        as_it_stands: PartsSource = OpenedShapes(self.library, item.open_share, scale) if opened else self.library
+        shown = as_it_stands if pieces is None else OneShape(pieces)
+        paint = (item.colour, item.finish, item.visible_materials)
+        surfaces = shape_surfaces(shown, item.shape_id, *paint, self.textures, scale)
+        grouped = {None: surfaces} if pieces is None else group_by_joint(surfaces)
+        made = {}
+        for number, surfaces in grouped.items():
+            of_joint = "" if number is None or pieces is None else f" {pieces.joints[number].name}"
+            name = f"{item.shape_id}{of_joint}"
+            made[number] = ExportMesh(self.labels.key(name), name, self.shared.surfaces(surfaces), item.shape_id)
+        return made
 
-def _node(
-    scene: Scene,
-    library: ShapeLibrary,
-    item: SceneObject,
-    made: Mapping[int | None, str],
-    shown: set[str],
-    labels: Labels,
-    *,
-    outward: bool,
-) -> ExportObject:
-    """The node of an object; the hinges of a door may let it open out of the room."""
-    name = item.label if item.label == item.id else f"{item.label} ({item.id})"
-    numbers = [number for number in made if number is not None]
-    pieces = articulation_of(library, item.shape_id) if numbers else None
-    joints = () if pieces is None else pieces.joints
-    if pieces is not None and outward:
-        joints = tuple(opening_out(j, pieces, n) if j.kind == "hinge" else j for n, j in enumerate(joints))
-    return ExportObject(
-        id=item.id,
-        name=labels.name(name),
-        slug=labels.slug(item.id),
-        parent=next((a for a in ancestors(scene, item.id) if a in shown), None),
-        T_world=item.pose.T_world_object,
-        scale=np.asarray(item.pose.scale),
-        mesh=made[None],
-        item=item,
-        support=scene.support_of(item.id),
-        limbs=tuple(limb_of(item, joints[n], n, made[n]) for n in numbers),
-    )
+    def node(self, item: SceneObject, made: Mapping[int | None, str], *, outward: bool) -> ExportObject:
+        """The node of an object; the hinges of a door may let it open out of the room."""
+        name = item.label if item.label == item.id else f"{item.label} ({item.id})"
+        numbers = [number for number in made if number is not None]
+        pieces = articulation_of(self.library, item.shape_id) if numbers else None
+        joints = () if pieces is None else pieces.joints
+        if pieces is not None and outward:
+            joints = tuple(opening_out(j, pieces, n) if j.kind == "hinge" else j for n, j in enumerate(joints))
+        return ExportObject(
+            id=item.id,
+            name=self.labels.name(name),
+            slug=self.labels.slug(item.id),
+            parent=next((a for a in ancestors(self.scene, item.id) if a in self.shown), None),
+            T_world=item.pose.T_world_object,
+            scale=np.asarray(item.pose.scale),
+            mesh=made[None],
+            item=item,
+            support=self.scene.support_of(item.id),
+            limbs=tuple(limb_of(item, joints[n], n, made[n]) for n in numbers),
+            group=self.groups.get(item.id, ()),
+        )

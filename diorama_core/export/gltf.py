@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, UInt8
-from scipy.spatial.transform import Rotation
+from jaxtyping import UInt8
 
 from diorama_core.export.files import whole_file
 from diorama_core.export.gathering import (
@@ -24,12 +23,14 @@ from diorama_core.export.gathering import (
     ExportOptions,
     ExportPlane,
     ExportScene,
+    T_world_lens,
     gather,
     rigid_inverse,
+    shift,
 )
-from diorama_core.export.gltf_document import GltfDocument
+from diorama_core.export.gltf_document import GltfDocument, placement
 from diorama_core.export.lights import ExportLight
-from diorama_core.export.names import unique_name
+from diorama_core.export.sharing import unique_name
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.schema import scene_to_json
@@ -37,8 +38,6 @@ from diorama_core.scene.types import Camera, Scene
 
 Textures = Mapping[str, UInt8[np.ndarray, "_ _ _"]]
 _HALF_TURN = float(np.sqrt(0.5))
-_CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
-"""glTF cameras look along their -z with y up; ours along +z with y down."""
 _WIDEST_CONE_RAD = 1.5
 
 
@@ -108,9 +107,6 @@ class _Builder:
         self._names = {name.casefold() for name in names}
         self._scene_text = scene_to_json(gathered.scene)
         self._entries = {o["id"]: o for o in json.loads(self._scene_text)["objects"]}
-        self._lights: dict[str, list[ExportLight]] = {}
-        for light in gathered.lights:
-            self._lights.setdefault(light.owner, []).append(light)
 
     def build(self) -> GltfDocument:
         planes = self._group([(p.group, self._plane(p)) for p in self._gathered.planes])
@@ -137,7 +133,7 @@ class _Builder:
         if children:
             root["children"] = children
         node = self._document.add("nodes", root)
-        self._document.set_scene(self._document.add("scenes", {"name": self._gathered.name, "nodes": [node]}))
+        self._document.set_scene(self._gathered.name, node)
         return self._document
 
     def _unique(self, name: str) -> str:
@@ -176,7 +172,7 @@ class _Builder:
         """The object's node: rigid with its mesh below where it carries others, which must not inherit its scale."""
         node: dict[str, Any] = {"name": item.name, **placement(self._gathered.T_parent(item))}
         mesh = {"mesh": self._mesh(item.mesh), "scale": [float(v) for v in item.scale]}
-        below = [self._light(item, light) for light in self._lights.get(item.id, ())]
+        below = [self._light(item, light) for light in self._gathered.lights_of(item.id)]
         below += [self._object(child) for child in self._gathered.children_of(item.id)]
         if below and not np.allclose(item.scale, 1.0, atol=1e-9):
             name = self._unique(f"{item.name} shape")
@@ -227,13 +223,8 @@ class _Builder:
         if light.kind == "window":
             entry["spot"] = {"innerConeAngle": 0.0, "outerConeAngle": _WIDEST_CONE_RAD}
         index = self._document.add_light(entry)
-        node = {
-            "name": self._unique(f"{item.name} light"),
-            **placement(rigid_inverse(item.T_world) @ light.T_world),
-            "extensions": {"KHR_lights_punctual": {"light": index}},
-            "extras": {"diorama_light": item.id},
-        }
-        return self._document.add("nodes", node)
+        name, T = self._unique(f"{item.name} light"), rigid_inverse(item.T_world) @ light.T_world
+        return self._document.add_light_node(name, index, T, extras={"diorama_light": item.id})
 
     def _room_lights(self) -> list[int]:
         """The main light, and for the light from all sides parallel lights and points within the room, half of it each.
@@ -244,22 +235,15 @@ class _Builder:
         if main is not None:
             about: dict[str, Any] = {"type": "directional", "color": [float(c) for c in main.colour]}
             about |= {"name": "main light", "intensity": main.lux * self._gathered.strength(main)}
-            found.append(self._room_light(self._document.add_light(about), placement(main.T_world), "main light"))
+            found.append((self._document.add_light(about), main.T_world, "main light"))
         if even is not None:
             for T in even.T_world:  # three.js aims only the first of nodes that share a light
                 about = {"type": "directional", "name": "even light", "intensity": even.lux / 2.0}
-                found.append(self._room_light(self._document.add_light(about), placement(T), "even light"))
-            point = {"type": "point", "name": "even light", "intensity": even.candela / 2.0}
-            index = self._document.add_light(point)
-            for position in even.positions:
-                T = np.eye(4)
-                T[:3, 3] = position
-                found.append(self._room_light(index, placement(T), "even light"))
-        return found
-
-    def _room_light(self, light: int, place: dict[str, Any], name: str) -> int:
-        extension = {"KHR_lights_punctual": {"light": light}}
-        return self._document.add("nodes", {"name": self._unique(name), **place, "extensions": extension})
+                found.append((self._document.add_light(about), T, "even light"))
+            about = {"type": "point", "name": "even light", "intensity": even.candela / 2.0}
+            point = self._document.add_light(about)
+            found += [(point, shift(position), "even light") for position in even.positions]
+        return [self._document.add_light_node(self._unique(name), light, T) for light, T, name in found]
 
     def _camera(self, camera: Camera) -> int:
         """The photo's camera. glTF knows no principal point off the centre, so `extras` keeps the intrinsics."""
@@ -271,13 +255,5 @@ class _Builder:
         }
         extras = {"width": k.width, "height": k.height, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy}
         index = self._document.add("cameras", {"name": "photo", "type": "perspective", "perspective": lens})
-        T = camera.T_world_camera.copy()
-        T[:3, :3] = T[:3, :3] @ _CAMERA_AXES
-        node = {"name": self._unique("photo camera"), "camera": index, **placement(T), "extras": extras}
-        return self._document.add("nodes", node)
-
-
-def placement(T: Float[np.ndarray, "4 4"]) -> dict[str, list[float]]:
-    """A node's rotation (glTF quaternions are x, y, z, w) and translation."""
-    quaternion = Rotation.from_matrix(T[:3, :3]).as_quat(canonical=True)
-    return {"rotation": [float(v) for v in quaternion], "translation": [float(v) for v in T[:3, 3]]}
+        node = {"name": self._unique("photo camera"), "camera": index, **placement(T_world_lens(camera))}
+        return self._document.add("nodes", {**node, "extras": extras})

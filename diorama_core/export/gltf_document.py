@@ -3,14 +3,9 @@
 Written to the letter of the Khronos specification: little endian, every view aligned to four bytes, bounds stated
 for positions, indices as small as they can be, texture rows from the top, pictures with power-of-two sides.
 
-Geometry compressed as EXT_meshopt_compression stores it.
-
-Positions are rounded to a sixteenth of a millimetre and texture coordinates to 1/4096, which compresses well and
-moves nothing visibly; directions become normalised bytes (KHR_mesh_quantization).
-
-Geometry compressed as KHR_draco_mesh_compression stores it: Google's Draco, by DracoPy.
-
-Positions move by at most a sixteenth of a millimetre, normals by a quarter of a degree, texture coordinates by 1/4096.
+Compressed by EXT_meshopt_compression, positions are rounded to a sixteenth of a millimetre and texture coordinates to
+1/4096, which moves nothing visibly; directions become normalised bytes (KHR_mesh_quantization). By
+KHR_draco_mesh_compression (Google's Draco, by DracoPy) normals move by a quarter of a degree, the others by as much.
 """
 
 from __future__ import annotations
@@ -24,7 +19,8 @@ from typing import Any
 
 import meshoptimizer
 import numpy as np
-from jaxtyping import Float32, Int, Integer
+from jaxtyping import Float, Float32, Int, Integer
+from scipy.spatial.transform import Rotation
 
 from diorama_core.errors import UnavailableError
 from diorama_core.export.gathering import Compression
@@ -75,11 +71,6 @@ class GltfDocument:
         self._json.setdefault(kind, []).append(entry)
         return len(self._json[kind]) - 1
 
-    def node(self, index: int) -> dict[str, Any]:
-        """A node that was added, to be completed."""
-        node: dict[str, Any] = self._json["nodes"][index]
-        return node
-
     def add_light(self, light: dict[str, Any]) -> int:
         """A light of KHR_lights_punctual."""
         self.use("KHR_lights_punctual")
@@ -87,9 +78,14 @@ class GltfDocument:
         lights.append(light)
         return len(lights) - 1
 
-    def set_scene(self, index: int) -> None:
-        """State which scene is shown."""
-        self._json["scene"] = index
+    def add_light_node(self, name: str, light: int, T: Float[np.ndarray, "4 4"], **more: Any) -> int:
+        """A node that shines with a light, at a rigid transform in its parent's frame."""
+        extension = {"KHR_lights_punctual": {"light": light}}
+        return self.add("nodes", {"name": name, **placement(T), "extensions": extension, **more})
+
+    def set_scene(self, name: str, root: int) -> None:
+        """State which node the scene that is shown has."""
+        self._json["scene"] = self.add("scenes", {"name": name, "nodes": [root]})
 
     def add_mesh(self, name: str, surfaces: tuple[Surface, ...]) -> int:
         """A mesh with one primitive per surface."""
@@ -100,8 +96,8 @@ class GltfDocument:
         if self._data:
             self._json["buffers"] = [{"byteLength": len(self._data)}]
         if self._decoded_bytes:
-            fallback = {"byteLength": self._decoded_bytes, "extensions": {MESHOPT_EXTENSION: {"fallback": True}}}
-            self._json["buffers"].append(fallback)
+            fallback = {MESHOPT_EXTENSION: {"fallback": True}}
+            self._json["buffers"].append({"byteLength": self._decoded_bytes, "extensions": fallback})
         text = json.dumps(self._json, separators=(",", ":"), allow_nan=False, ensure_ascii=False).encode()
         text += b" " * (-len(text) % 4)
         self._data += b"\0" * (-len(self._data) % 4)
@@ -156,50 +152,38 @@ class GltfDocument:
         self.use(DRACO_EXTENSION, required=True)
         accessors = {}
         for name in arrays:
-            kind = _WIDTHS[arrays[name].shape[1]]
-            entry: dict[str, Any] = {"componentType": 5126, "count": packed.vertices, "type": kind}
-            if name == "POSITION":
-                entry |= {"min": packed.lower.tolist(), "max": packed.upper.tolist()}
-            accessors[name] = self.add("accessors", entry)
-        wide = 5123 if packed.vertices < 65536 else 5125
-        indices = {"componentType": wide, "count": 3 * packed.triangles, "type": "SCALAR"}
+            bounds = {"min": packed.lower.tolist(), "max": packed.upper.tolist()} if name == "POSITION" else {}
+            accessors[name] = self._accessor("f4", packed.vertices, arrays[name].shape[1], **bounds)
+        indices = self._accessor(_index_type(packed.vertices), 3 * packed.triangles, 1)
         stored = {"bufferView": self._view(packed.data), "attributes": dict(packed.attributes)}
-        return {
-            "attributes": accessors,
-            "indices": self.add("accessors", indices),
-            "material": material,
-            "extensions": {DRACO_EXTENSION: stored},
-        }
+        primitive = {"attributes": accessors, "indices": indices, "material": material}
+        return {**primitive, "extensions": {DRACO_EXTENSION: stored}}
 
     def _attribute(self, name: str, values: np.ndarray) -> int:
-        normalised = values.dtype.itemsize == 1
-        width = 3 if name in ("POSITION", "NORMAL") else values.shape[1]
-        entry: dict[str, Any] = {
-            "bufferView": self._vertex_view(values),
-            "componentType": _COMPONENT_TYPES[values.dtype.str[1:]],
-            "count": len(values),
-            "type": _WIDTHS[width],
-        }
-        if normalised:
+        if self._compressed:
+            view = self._add_compressed_view(encode_vertices(values), values, "ATTRIBUTES")
+        else:
+            view = self._view(values.tobytes(), _ARRAY_BUFFER)
+        more: dict[str, Any] = {}
+        if values.dtype.itemsize == 1:
             self.use("KHR_mesh_quantization", required=True)
-            entry["normalized"] = True
+            more["normalized"] = True
         if name == "POSITION":
-            entry |= {"min": [float(v) for v in values.min(axis=0)], "max": [float(v) for v in values.max(axis=0)]}
-        return self.add("accessors", entry)
+            more |= {"min": values.min(axis=0).tolist(), "max": values.max(axis=0).tolist()}
+        width = 3 if name in ("POSITION", "NORMAL") else values.shape[1]
+        return self._accessor(values.dtype.str[1:], len(values), width, view, **more)
 
     def _indices(self, indices: np.ndarray, vertices: int) -> int:
-        data = indices.astype("<u2" if vertices < 65536 else "<u4")
+        data = indices.astype(f"<{_index_type(vertices)}")
         if self._compressed:
             view = self._add_compressed_view(encode_faces(indices, vertices), data, "TRIANGLES")
         else:
             view = self._view(data.tobytes(), _ELEMENT_ARRAY_BUFFER)
-        kind = _COMPONENT_TYPES[data.dtype.str[1:]]
-        return self.add("accessors", {"bufferView": view, "componentType": kind, "count": len(data), "type": "SCALAR"})
+        return self._accessor(data.dtype.str[1:], len(data), 1, view)
 
-    def _vertex_view(self, values: np.ndarray) -> int:
-        if self._compressed:
-            return self._add_compressed_view(encode_vertices(values), values, "ATTRIBUTES")
-        return self._view(values.tobytes(), _ARRAY_BUFFER)
+    def _accessor(self, number: str, count: int, width: int, view: int | None = None, **more: Any) -> int:
+        about = {"componentType": _COMPONENT_TYPES[number], "count": count, "type": _WIDTHS[width], **more}
+        return self.add("accessors", about if view is None else {"bufferView": view, **about})
 
     def _view(self, data: bytes, target: int | None = None) -> int:
         entry: dict[str, Any] = {"buffer": 0, "byteOffset": self._append(data), "byteLength": len(data)}
@@ -211,14 +195,8 @@ class GltfDocument:
         """A view of the fallback buffer, which no file stores, with the compressed data that stand for it."""
         self.use(MESHOPT_EXTENSION, required=True)
         stride = values.itemsize * (values.shape[1] if values.ndim > 1 else 1)
-        packed = {
-            "buffer": 0,
-            "byteOffset": self._append(encoded),
-            "byteLength": len(encoded),
-            "byteStride": stride,
-            "count": len(values),
-            "mode": mode,
-        }
+        packed: dict[str, Any] = {"buffer": 0, "byteOffset": self._append(encoded), "byteLength": len(encoded)}
+        packed |= {"byteStride": stride, "count": len(values), "mode": mode}
         entry: dict[str, Any] = {"buffer": 1, "byteOffset": self._decoded_bytes, "byteLength": values.nbytes}
         if mode == "ATTRIBUTES":
             entry["byteStride"] = stride
@@ -248,11 +226,10 @@ class GltfDocument:
         entry: dict[str, Any] = {"name": material.name, "pbrMetallicRoughness": surface}
         if textured and material.texture is not None:
             surface["baseColorTexture"] = {"index": self._texture(material.texture)}
-        if textured and "metallicRoughnessTexture" in material.maps:
-            surface["metallicRoughnessTexture"] = {"index": self._texture(material.maps["metallicRoughnessTexture"])}
-        for slot in ("normalTexture", "occlusionTexture", "emissiveTexture"):
+        for slot in ("metallicRoughnessTexture", "normalTexture", "occlusionTexture", "emissiveTexture"):
             if textured and slot in material.maps:
-                entry[slot] = {"index": self._texture(material.maps[slot])}
+                owner = surface if slot == "metallicRoughnessTexture" else entry
+                owner[slot] = {"index": self._texture(material.maps[slot])}
         if any(material.emissive):
             entry["emissiveFactor"] = [min(max(c, 0.0), 1.0) for c in material.emissive]
         if material.alpha < 1:
@@ -273,6 +250,17 @@ class GltfDocument:
             image = self.add("images", {"bufferView": self._view(content), "mimeType": _MEDIA_TYPES[suffix]})
             self._pictures[id(picture)] = self.add("textures", {"sampler": 0, "source": image})
         return self._pictures[id(picture)]
+
+
+def placement(T: Float[np.ndarray, "4 4"]) -> dict[str, list[float]]:
+    """A node's rotation (glTF quaternions are x, y, z, w) and translation."""
+    quaternion = Rotation.from_matrix(T[:3, :3]).as_quat(canonical=True)
+    return {"rotation": [float(v) for v in quaternion], "translation": [float(v) for v in T[:3, 3]]}
+
+
+def _index_type(vertices: int) -> str:
+    """As small as it can be."""
+    return "u2" if vertices < 65536 else "u4"
 
 
 def tangents(surface: Surface) -> Float32[np.ndarray, "n 4"]:
@@ -383,7 +371,8 @@ def draco_mesh(arrays: Mapping[str, np.ndarray], faces: Int[np.ndarray, "m 3"]) 
         normals=_double(arrays.get("NORMAL")),
         tex_coord_quantization_bits=UV_BITS,
         normal_quantization_bits=NORMAL_BITS,
-        generic_attributes={_OWN[name]: _plain(values) for name, values in arrays.items() if name in _OWN} or None,
+        generic_attributes={_OWN[n]: np.ascontiguousarray(v, np.float32) for n, v in arrays.items() if n in _OWN}
+        or None,
     )
     decoded = DracoPy.decode(data)
     points = np.asarray(decoded.points, dtype=np.float32)
@@ -394,10 +383,6 @@ def draco_mesh(arrays: Mapping[str, np.ndarray], faces: Int[np.ndarray, "m 3"]) 
         kinds.get(a["attribute_type"], kinds_by_id.get(a["unique_id"], "")): a["unique_id"] for a in decoded.attributes
     }
     return DracoMesh(data, ids, len(points), len(decoded.faces), points.min(axis=0), points.max(axis=0))
-
-
-def _plain(values: np.ndarray | None) -> np.ndarray | None:
-    return None if values is None else np.ascontiguousarray(values, dtype=np.float32)
 
 
 def _double(values: np.ndarray | None) -> np.ndarray | None:

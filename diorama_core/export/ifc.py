@@ -32,12 +32,7 @@ THROUGH_M = 0.05
 
 
 def write_ifc(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write the model, whole or not at all.
-
-    Raises:
-        ExportError: when it cannot be written.
-        Cancelled: when asked to stop; what was there stays.
-    """
+    """Write the model, as `Writer` says."""
     builder = _Builder(scene, progress)
     with whole_file(Path(path)) as temporary, temporary.open("w", encoding="ascii", newline="\n") as stream:
         stream.writelines(builder.build().lines())
@@ -111,13 +106,9 @@ class _Builder:
 
     def _building(self) -> Any:
         """Project, site and building, each inside the one before."""
-        units = [
-            self._to.add("IfcSIUnit", None, "LENGTHUNIT", None, "METRE"),
-            self._to.add("IfcSIUnit", None, "AREAUNIT", None, "SQUARE_METRE"),
-            self._to.add("IfcSIUnit", None, "VOLUMEUNIT", None, "CUBIC_METRE"),
-            self._to.add("IfcSIUnit", None, "PLANEANGLEUNIT", None, "RADIAN"),
-        ]
-        assignment = self._to.add("IfcUnitAssignment", units)
+        units = {"LENGTH": "METRE", "AREA": "SQUARE_METRE", "VOLUME": "CUBIC_METRE", "PLANEANGLE": "RADIAN"}
+        made = [self._to.add("IfcSIUnit", None, f"{kind}UNIT", None, name) for kind, name in units.items()]
+        assignment = self._to.add("IfcUnitAssignment", made)
         parent = self._to.entity(
             "IfcProject", Name=self._scene.name, RepresentationContexts=[self._to.context], UnitsInContext=assignment
         )
@@ -141,14 +132,9 @@ class _Builder:
         if height <= 0.0:
             return None
         solid = self._to.extrude(floor.polygon[:, :2], float(floor.centre[2]), height)
-        space = self._to.entity(
-            "IfcSpace",
-            Name=self._scene.name if room is None else room.name,
-            ObjectPlacement=self._to.placement(np.eye(4), storey.ObjectPlacement),
-            Representation=self._to.shape([solid], "SweptSolid"),
-            CompositionType="ELEMENT",
-            PredefinedType="INTERNAL",
-        )
+        name = self._scene.name if room is None else room.name
+        kinds = {"CompositionType": "ELEMENT", "PredefinedType": "INTERNAL"}
+        space = self._to.solid("IfcSpace", solid, storey.ObjectPlacement, Name=name, **kinds)
         self._to.entity("IfcRelAggregates", RelatingObject=storey, RelatedObjects=[space])
         self._to.measure(
             space, "Space", height={"Height": height}, area={"NetFloorArea": area}, volume={"NetVolume": area * height}
@@ -190,13 +176,8 @@ class _Builder:
             max(wall.plane.thickness, MIN_WALL_M) + 2 * THROUGH_M,
             opening.top_m - opening.bottom_m,
         )
-        return self._to.entity(
-            "IfcOpeningElement",
-            Name=opening.id,
-            ObjectPlacement=self._to.placement(np.eye(4), place),
-            Representation=self._to.shape([self._to.box(low, size)], "SweptSolid"),
-            PredefinedType="OPENING",
-        )
+        hole = self._to.box(low, size)
+        return self._to.solid("IfcOpeningElement", hole, place, Name=opening.id, PredefinedType="OPENING")
 
     def _slab(self, plane: Plane, name: str, storey: Any) -> Any:
         """Floor or ceiling: its polygon, thick away from the room."""
@@ -205,13 +186,7 @@ class _Builder:
         solid = self._to.extrude(points, bottom, float(plane.thickness))
         self._to.style(solid, _plain(plane.colour))
         kind, predefined = ("IfcSlab", "FLOOR") if plane.role == "floor" else ("IfcCovering", "CEILING")
-        element = self._to.entity(
-            kind,
-            Name=name,
-            ObjectPlacement=self._to.placement(np.eye(4), storey.ObjectPlacement),
-            Representation=self._to.shape([solid], "SweptSolid"),
-            PredefinedType=predefined,
-        )
+        element = self._to.solid(kind, solid, storey.ObjectPlacement, Name=name, PredefinedType=predefined)
         self._to.set_material(element, self._to.material(_plain(plane.colour), plane.role))
         area = abs(signed_area(plane.polygon[:, :2]))
         self._to.measure(
@@ -275,19 +250,11 @@ class _Builder:
         properties = {"Id": item.id, "Category": item.item.category, "Shape": item.item.shape_id}
         if item.support is not None:
             properties |= {"Supporter": item.support.parent, "Relation": item.support.relation}
-        self._to.entity(
-            "IfcRelDefinesByProperties",
-            RelatedObjects=[element],
-            RelatingPropertyDefinition=self._to.entity(
-                "IfcPropertySet", Name="Diorama", HasProperties=self._values(properties)
-            ),
-        )
-
-    def _values(self, properties: Mapping[str, str]) -> list[Any]:
-        return [
+        values = [
             self._to.add("IfcPropertySingleValue", name, None, self._to.add("IfcLabel", value[:255]), None)
             for name, value in properties.items()
         ]
+        self._to.define(element, self._to.entity("IfcPropertySet", Name="Diorama", HasProperties=values))
 
 
 def _plain(colour_srgb: tuple[float, float, float]) -> Material:

@@ -68,14 +68,8 @@ class IfcDocument:
 
     def _contexts(self) -> tuple[Any, Any]:
         model = self.add("IfcGeometricRepresentationContext", None, "Model", 3, 1e-5, self.origin, None)
-        body = self.add(
-            "IfcGeometricRepresentationSubContext",
-            ContextIdentifier="Body",
-            ContextType="Model",
-            ParentContext=model,
-            TargetView="MODEL_VIEW",
-        )
-        return model, body
+        about = {"ContextIdentifier": "Body", "ContextType": "Model", "TargetView": "MODEL_VIEW"}
+        return model, self.add("IfcGeometricRepresentationSubContext", ParentContext=model, **about)
 
     def box(self, low: Sequence[float], size: Sequence[float]) -> Any:
         """A box along the axes, from its lower corner."""
@@ -97,6 +91,15 @@ class IfcDocument:
         up = self.direction(np.array([0.0, 0.0, 1.0]))
         return self.add("IfcExtrudedAreaSolid", profile, self.frame(T), up, height_m)
 
+    def solid(self, kind: str, solid: Any, below: Any, **named: Any) -> Any:
+        """An element that is one solid, at the place of another."""
+        place, shape = self.placement(np.eye(4), below), self.shape([solid], "SweptSolid")
+        return self.entity(kind, ObjectPlacement=place, Representation=shape, **named)
+
+    def define(self, element: Any, definition: Any) -> None:
+        """Give an element a set of properties or quantities."""
+        self.entity("IfcRelDefinesByProperties", RelatedObjects=[element], RelatingPropertyDefinition=definition)
+
     def shape(self, items: list[Any], kind: str) -> Any:
         """An element's representation by items of one kind."""
         body = self.add("IfcShapeRepresentation", self._body, "Body", kind, items)
@@ -105,10 +108,8 @@ class IfcDocument:
     def style(self, item: Any, material: Material) -> None:
         """Give an item the colour of a material."""
         if id(material) not in self._styles:
-            red, green, blue = (
-                float(c) for c in np.clip(linear_to_srgb(np.asarray(material.colour, dtype=np.float64)), 0, 1)
-            )
-            colour = self.add("IfcColourRgb", None, red, green, blue)
+            srgb = np.clip(linear_to_srgb(np.asarray(material.colour, dtype=np.float64)), 0, 1)
+            colour = self.add("IfcColourRgb", None, *srgb.tolist())
             shading = self.add("IfcSurfaceStyleShading", colour, float(1.0 - material.alpha))
             style = self.add("IfcSurfaceStyle", material.name, "BOTH", [shading])
             self._styles[id(material)] = (style, material)  # holding the material keeps its id from being reused
@@ -139,8 +140,7 @@ class IfcDocument:
             for name, value in values.items()
         ]
         name = f"Qto_{of}BaseQuantities"
-        quantity_set = self.entity("IfcElementQuantity", Name=name, Quantities=quantities)
-        self.entity("IfcRelDefinesByProperties", RelatedObjects=[element], RelatingPropertyDefinition=quantity_set)
+        self.define(element, self.entity("IfcElementQuantity", Name=name, Quantities=quantities))
 
     def tessellate(self, surfaces: Sequence[Surface]) -> Any:
         """Triangles in their materials' styles, as what types and elements map."""

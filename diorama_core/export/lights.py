@@ -133,12 +133,7 @@ def even_irradiance(scene: Scene, others: Iterable[ExportLight] = ()) -> float:
 
 
 def even_light_of(scene: Scene, others: Iterable[ExportLight] = ()) -> EvenLight | None:
-    """The even part of a room's light; None without a room. Arguments are those of `even_irradiance`.
-
-    Args:
-        scene: With the room.
-        others: Lights of its objects.
-    """
+    """The even part of a room's light; None without a room. Arguments are those of `even_irradiance`."""
     if not scene.architecture.planes:
         return None
     # A point of I candela sends 4 pi I lumens to the walls; what gets pi lux shows white.

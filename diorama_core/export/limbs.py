@@ -102,12 +102,12 @@ def limb_parts(library: ShapeLibrary, shape_id: str, number: int | None) -> tupl
     return parts_of_solids(whole.vertices, whole.faces)
 
 
+@dataclass(frozen=True)
 class OneShape:
     """Lets a scene of moving parts be read like the parts of a library's shape."""
 
-    def __init__(self, pieces: Articulation) -> None:
-        self._pieces = pieces
+    pieces: Articulation
 
     def parts(self, shape_id: str) -> trimesh.Scene:
         """All of them, whichever the shape is called."""
-        return self._pieces.scene
+        return self.pieces.scene

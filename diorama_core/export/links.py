@@ -8,7 +8,7 @@ what stands open is placed open, its joint is at zero there, and the limits are 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -22,9 +22,12 @@ from diorama_core.export.gathering import ExportMesh, ExportScene, rigid_inverse
 from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.physics import Inertia
 from diorama_core.export.wavefront import MaterialFile, hull_file, obj_file
+from diorama_core.io.srgb import linear_to_srgb
 from diorama_core.progress import Progress
+from diorama_core.render.appearance import Material
 
 MATERIALS = "materials.mtl"
+_TERMS = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
 LinkJoint = Literal["free", "fixed", "hinge", "slide", "swivel"]
 
 
@@ -65,35 +68,23 @@ def links_of(gathered: ExportScene, physical: PhysicalScene) -> tuple[Link, ...]
         node = body.node
         parent = None if body.free or body.carrier is None else slugs[body.carrier]
         carrier = np.eye(4) if body.carrier is None or body.free else gathered.object(body.carrier).T_world
-        links.append(
-            Link(
-                name=node.slug,
-                parent=parent,
-                joint="free" if body.free else "fixed",
-                T_parent=rigid_inverse(carrier) @ node.T_world,
-                mesh=gathered.meshes[node.mesh],
-                scale=node.scale,
-                parts=body.parts,
-                inertia=body.inertia,
-                friction=body.friction,
-            )
+        top = Link(
+            name=node.slug,
+            parent=parent,
+            joint="free" if body.free else "fixed",
+            T_parent=rigid_inverse(carrier) @ node.T_world,
+            mesh=gathered.meshes[node.mesh],
+            scale=node.scale,
+            parts=body.parts,
+            inertia=body.inertia,
+            friction=body.friction,
         )
+        links.append(top)
         for moving in body.moving:
-            links.append(
-                Link(
-                    name=body_name(node.slug, moving.limb),
-                    parent=node.slug,
-                    joint=moving.limb.kind,
-                    T_parent=moving.limb.T_object_limb,
-                    mesh=gathered.meshes[moving.limb.mesh],
-                    scale=node.scale,
-                    parts=moving.parts,
-                    inertia=moving.inertia,
-                    friction=body.friction,
-                    limb=moving.limb,
-                    joint_friction=moving.friction,
-                )
-            )
+            limb = moving.limb
+            part = replace(top, name=body_name(node.slug, limb), parent=node.slug, joint=limb.kind, limb=limb)
+            part = replace(part, T_parent=limb.T_object_limb, mesh=gathered.meshes[limb.mesh], parts=moving.parts)
+            links.append(replace(part, inertia=moving.inertia, joint_friction=moving.friction))
     return tuple(links)
 
 
@@ -103,15 +94,11 @@ def body_name(slug: str, limb: ExportLimb | None) -> str:
 
 
 def _carriers_first(bodies: tuple[RigidBody, ...]) -> list[RigidBody]:
-    done: list[RigidBody] = []
-    names: set[str] = set()
-    waiting = list(bodies)
-    while waiting:
-        ready = [b for b in waiting if b.free or b.carrier is None or b.carrier in names]
-        done += ready
-        names |= {b.node.id for b in ready}
-        waiting = [b for b in waiting if b.node.id not in names]
-    return done
+    done: dict[str, RigidBody] = {}
+    while len(done) < len(bodies):
+        waiting = (b for b in bodies if b.node.id not in done)
+        done |= {b.node.id: b for b in waiting if b.free or b.carrier is None or b.carrier in done}
+    return list(done.values())
 
 
 def group(links: tuple[Link, ...]) -> dict[str, tuple[Link, ...]]:
@@ -184,3 +171,18 @@ def collider_files(physical: PhysicalScene, folder: str) -> Iterator[Entry]:
     for owner, parts in owners:
         for number, part in enumerate(parts):
             yield collider_file(folder, owner, number), hull_file(*hull_faces(part))
+
+
+def numbers(values: Float[np.ndarray, " n"]) -> str:
+    """Numbers side by side, with nine significant digits."""
+    return " ".join([f"{value:.9g}" for value in np.asarray(values, dtype=float).tolist()])
+
+
+def inertia_terms(tensor: Float[np.ndarray, "3 3"]) -> dict[str, str]:
+    """The six different entries of an inertia tensor, by the names that URDF and SDF give them."""
+    return {name: f"{float(tensor[at]):.8g}" for name, at in _TERMS.items()}
+
+
+def srgb_rgba(material: Material) -> Float[np.ndarray, "4"]:
+    """A material's colour as programs without linear light expect it."""
+    return np.append(linear_to_srgb(np.asarray(material.colour)), material.alpha)

@@ -7,29 +7,27 @@ quaternions wxyz, as MuJoCo has them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
 
 from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidBody, StaticSlab
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, write_package
-from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene, rigid_inverse
+from diorama_core.export.gathering import ExportMesh, ExportObject, ExportScene, T_world_lens, rigid_inverse
 from diorama_core.export.lights import ExportLight, MainLight, even_irradiance
-from diorama_core.export.links import body_name, collider_file, collider_files
+from diorama_core.export.links import body_name, collider_file, collider_files, numbers, srgb_rgba, visual_file
 from diorama_core.export.physics import FLOOR_FRICTION, Inertia
 from diorama_core.export.pictures import OncePerPicture, png_bytes
 from diorama_core.export.wavefront import obj_file
-from diorama_core.export.xml_values import numbers, srgb_rgba
+from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.lighting import MEAN_IRRADIANCE
 from diorama_core.scene.types import Camera
 
-_CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
-"""MuJoCo's cameras look along their -z with y up; ours along +z with y down."""
 SENSOR_M = 0.036
 """Width of the camera's sensor: any gives the same picture."""
 SCREEN_GAMMA = 2.2
@@ -37,11 +35,7 @@ SCREEN_GAMMA = 2.2
 
 
 def write_mjcf(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write a MuJoCo model: `.xml` with a folder beside it, or everything as one `.zip`.
-
-    Raises:
-        ExportError: when it cannot be written.
-    """
+    """Write a MuJoCo model: `.xml` with a folder beside it, or everything as one `.zip`, as `Writer` says."""
     progress.report(0.0, "preparing colliders")
     physical = physical_scene(gathered)
     main, folder = f"{Path(path).stem}.xml", companion_folder(path, "mjcf")
@@ -85,10 +79,7 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     below: dict[str | None, list[RigidBody]] = {}
     for body in physical.bodies:
         below.setdefault(None if body.free else body.carrier, []).append(body)
-    lights: dict[str, list[ExportLight]] = {}
-    for light in gathered.lights:
-        lights.setdefault(light.owner, []).append(light)
-    writer = _BodyWriter(gathered, assets, below, lights, even, folder)
+    writer = _BodyWriter(gathered, assets, below, even, folder)
     for body in below.get(None, ()):
         writer.write(world, body, np.eye(4))
     # A part and the case it sits in touch; MuJoCo knows that by itself only where the case can move.
@@ -100,33 +91,18 @@ def mjcf_text(gathered: ExportScene, physical: PhysicalScene, folder: str | None
     return tostring(root, encoding="unicode", xml_declaration=False) + "\n"
 
 
+@dataclass(frozen=True)
 class _BodyWriter:
     """Writes bodies with what is welded to them."""
 
-    def __init__(
-        self,
-        gathered: ExportScene,
-        assets: Element,
-        below: dict[str | None, list[RigidBody]],
-        lights: dict[str, list[ExportLight]],
-        even: float,
-        folder: str | None,
-    ) -> None:
-        self._gathered = gathered
-        self._assets = assets
-        self._below = below
-        self._lights = lights
-        self._even = even
-        self._folder = folder
+    gathered: ExportScene
+    assets: Element
+    below: dict[str | None, list[RigidBody]]
+    even: float
+    folder: str | None
 
     def write(self, parent: Element, body: RigidBody, T_world_parent: Float[np.ndarray, "4 4"]) -> None:
-        """Add a body, what moves in it, and the bodies on it to an element of the model.
-
-        Args:
-            parent: element that gets the body.
-            body: with its colliders, joints and mass.
-            T_world_parent: pose of the parent's frame in the world.
-        """
+        """Add a body, what moves in it, and the bodies on it to an element of the model."""
         node = body.node
         T = rigid_inverse(T_world_parent) @ node.T_world
         element = SubElement(parent, "body", {"name": node.slug, **_placement(T)})
@@ -134,13 +110,13 @@ class _BodyWriter:
             SubElement(element, "freejoint", name=f"{node.slug}_free")
         _inertial(element, body.inertia)
         self._colliders(element, body, body.parts, node.slug)
-        if self._folder is not None:
-            _visuals(element, self._assets, self._gathered.meshes[node.mesh], node, self._folder)
-            for light in self._lights.get(node.id, ()):
-                _light(element, rigid_inverse(node.T_world) @ light.T_world, light, self._even)
+        if self.folder is not None:
+            _visuals(element, self.assets, self.gathered.meshes[node.mesh], node, self.folder)
+            for light in self.gathered.lights_of(node.id):
+                _light(element, rigid_inverse(node.T_world) @ light.T_world, light, self.even)
         for moving in body.moving:
             self._limb(element, body, moving)
-        for child in self._below.get(node.id, ()):
+        for child in self.below.get(node.id, ()):
             self.write(element, child, node.T_world)
 
     def _limb(self, parent: Element, body: RigidBody, moving: MovingPart) -> None:
@@ -159,27 +135,19 @@ class _BodyWriter:
         SubElement(element, "joint", joint)
         _inertial(element, moving.inertia)
         self._colliders(element, body, moving.parts, name)
-        if self._folder is not None:
-            mesh = self._gathered.meshes[limb.mesh]
-            _visuals(element, self._assets, mesh, body.node, self._folder, name)
+        if self.folder is not None:
+            mesh = self.gathered.meshes[limb.mesh]
+            _visuals(element, self.assets, mesh, body.node, self.folder, name)
 
     def _colliders(self, element: Element, body: RigidBody, parts: tuple[Points, ...], name: str) -> None:
         for number, part in enumerate(parts):
-            mesh = _hull(self._assets, part, name, number, self._folder)
+            mesh = _hull(self.assets, part, name, number, self.folder)
             attributes = {"type": "mesh", "mesh": mesh, "friction": f"{body.friction:.3g}"}
             SubElement(element, "geom", {"name": mesh, "class": "collider", **attributes})
 
 
 def _hull(assets: Element, part: Points, owner: str, number: int, folder: str | None) -> str:
-    """A convex mesh, and its name: as a file, which Drake asks for too, or without files in place.
-
-    Args:
-        assets: Where it is declared.
-        part: Its corners.
-        owner: Name of its body.
-        number: Among those of the body.
-        folder: That files are in; None for none.
-    """
+    """A convex mesh, and its name: as a file, which Drake asks for too, or in place where there is no folder."""
     name = f"{owner}_part_{number}"
     content = {"vertex": numbers(part.ravel())} if folder is None else {"file": collider_file(folder, owner, number)}
     SubElement(assets, "mesh", {"name": name, **content, "inertia": "convex"})
@@ -188,8 +156,7 @@ def _hull(assets: Element, part: Points, owner: str, number: int, folder: str | 
 
 def _inertial(element: Element, inertia: Inertia) -> None:
     moments, axes = inertia.principal
-    quaternion = Rotation.from_matrix(axes).as_quat(canonical=True, scalar_first=True)
-    values = {"pos": inertia.centre, "quat": quaternion, "diaginertia": moments}
+    values = {"pos": inertia.centre, "quat": quaternion_wxyz(axes), "diaginertia": moments}
     attributes = {name: numbers(value) for name, value in values.items()}
     SubElement(element, "inertial", {"mass": f"{inertia.mass_kg:.8g}", **attributes})
 
@@ -238,7 +205,7 @@ def _visuals(
     for number, surface in enumerate(mesh.surfaces):
         name = f"{label}_shape_{number}"
         scale = {} if node is None else {"scale": numbers(node.scale)}
-        file = f"{folder}/meshes/{mesh.key}_{number}.obj"
+        file = visual_file(folder, mesh, number)
         SubElement(assets, "mesh", {"name": name, "file": file, "inertia": "shell", **scale})
         attributes = {"type": "mesh", "mesh": name, "material": surface.material.name}
         SubElement(element, "geom", {"name": name, "class": "visual", **attributes})
@@ -267,7 +234,7 @@ def _meshes(gathered: ExportScene, folder: str, progress: Progress) -> Iterator[
     for done, mesh in enumerate(gathered.meshes.values()):
         progress.report(0.3 + 0.7 * done / len(gathered.meshes), f"writing {mesh.name}")
         for number, surface in enumerate(mesh.surfaces):
-            yield f"{folder}/meshes/{mesh.key}_{number}.obj", obj_file(surface)
+            yield visual_file(folder, mesh, number), obj_file(surface)
 
 
 def _ambient_irradiance(gathered: ExportScene) -> tuple[float, float]:
@@ -297,8 +264,6 @@ def _main_light(world: Element, light: MainLight, even: float) -> None:
 
 
 def _camera(world: Element, camera: Camera) -> None:
-    T = camera.T_world_camera.copy()
-    T[:3, :3] = T[:3, :3] @ _CAMERA_AXES
     k = camera.intrinsics
     lens = {
         "resolution": f"{k.width} {k.height}",
@@ -306,9 +271,8 @@ def _camera(world: Element, camera: Camera) -> None:
         "focalpixel": numbers(np.array([k.fx, k.fy])),
         "principalpixel": numbers(np.array([0.5 * k.width - k.cx, 0.5 * k.height - k.cy])),
     }
-    SubElement(world, "camera", {"name": "photo", **lens, **_placement(T)})
+    SubElement(world, "camera", {"name": "photo", **lens, **_placement(T_world_lens(camera))})
 
 
 def _placement(T: Float[np.ndarray, "4 4"]) -> dict[str, str]:
-    quaternion = Rotation.from_matrix(T[:3, :3]).as_quat(canonical=True, scalar_first=True)
-    return {"pos": numbers(T[:3, 3]), "quat": numbers(quaternion)}
+    return {"pos": numbers(T[:3, 3]), "quat": numbers(quaternion_wxyz(T[:3, :3]))}

@@ -63,12 +63,6 @@ def outlines(physical: PhysicalScene) -> tuple[BodyOutline, ...]:
     )
 
 
-def floor_level(gathered: ExportScene) -> float:
-    """Height of the floor in the world; 0 without one."""
-    floor = gathered.scene.architecture.floor
-    return 0.0 if floor is None else float(floor.centre[2])
-
-
 def floor_area(gathered: ExportScene) -> BaseGeometry:
     """All floors as one, joined where a wall's thickness parts them."""
     floors = [shapely.make_valid(Polygon(p.polygon[:, :2])) for p in gathered.scene.architecture.by_role("floor")]
@@ -78,7 +72,7 @@ def floor_area(gathered: ExportScene) -> BaseGeometry:
 
 def occupied_area(gathered: ExportScene, bodies: Iterable[BodyOutline]) -> BaseGeometry:
     """What stands in a robot's way, seen from above."""
-    level = floor_level(gathered)
+    level = gathered.floor_m
     return shapely.unary_union([b.section_between(level + LOW_M, level + HIGH_M) for b in bodies])
 
 

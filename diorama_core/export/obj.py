@@ -19,12 +19,7 @@ from diorama_core.progress import SILENT, Progress
 
 
 def write_obj(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write `path` (.zip with everything in it, or .obj with a folder beside it), whole or not at all.
-
-    Raises:
-        ExportError: when it cannot be written.
-        Cancelled: when asked to stop; what was there stays.
-    """
+    """Write a .zip with everything in it, or an .obj with a folder beside it, as `Writer` says."""
     path = Path(path)
     materials = MaterialFile(scene.materials, pictures="textures/")
     if path.suffix.lower() == ".zip":

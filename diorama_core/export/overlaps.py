@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
 
-from diorama_core.export.bodies import MovingPart, Points, RigidBody, StaticSlab, hull_volume, is_soft
+from diorama_core.export.bodies import MovingPart, Points, RigidBody, StaticSlab, hull_volume, is_soft, place
 from diorama_core.geometry.convex import hull_part
 from diorama_core.geometry.sat import pack_parts, pair_axes, place_bodies
 from diorama_core.scene.frames import UP_WORLD
@@ -43,26 +43,25 @@ class Cuts:
         self._limbs: list[int | None] = []
         self._world: list[Points] = []
         self._frames: dict[tuple[str, int | None], Float[np.ndarray, "4 4"]] = {}
+        self._rows: dict[tuple[str | None, int | None], list[int]] = {}
         for body in bodies.values():
             rest = (None, body.node.T_world, body.parts)
             moving = [(m.limb.number, body.node.T_world @ m.limb.T_object_limb, m.parts) for m in body.moving]
             for limb, T, parts in (rest, *moving):
                 self._frames[body.node.id, limb] = T
                 for part in parts:
-                    self._owners.append(body.node.id)
-                    self._limbs.append(limb)
-                    self._world.append(part @ T[:3, :3].T + T[:3, 3])
-        for slab in slabs:
-            for piece in slab.pieces:
-                self._owners.append(None)
-                self._limbs.append(None)
-                self._world.append(piece)
-        self._rows: dict[tuple[str | None, int | None], list[int]] = {}
-        for row, owner in enumerate(zip(self._owners, self._limbs, strict=True)):
-            self._rows.setdefault(owner, []).append(row)
+                    self._add(body.node.id, limb, place(T, part))
+        for piece in (piece for slab in slabs for piece in slab.pieces):
+            self._add(None, None, piece)
         self._deep: list[tuple[int, int]] = []
         self._pieces: dict[int, list[Points]] = {}
         self.sunk: dict[str, str | None] = {}
+
+    def _add(self, owner: str | None, limb: int | None, part: Points) -> None:
+        self._rows.setdefault((owner, limb), []).append(len(self._world))
+        self._owners.append(owner)
+        self._limbs.append(limb)
+        self._world.append(part)
 
     def parts(self, object_id: str, limb: int | None = None) -> tuple[Points, ...]:
         """The parts of an object, or of one of its limbs, that are left, in the frame of either."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Concatenate, Generic, ParamSpec, TypeVar
 
 import numpy as np
@@ -12,11 +12,13 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_core.io.srgb import linear_to_srgb, srgb_to_linear
+from diorama_core.scene.types import Scene
 
 Picture = UInt8[np.ndarray, "_ _ _"]
 JPEG_FROM_PX = 512 * 512
 """Larger opaque pictures are JPEG, the others PNG."""
 JPEG_QUALITY = 92
+MAX_PHOTO_TEXTURES_PX = 4096
 PNG_LEVEL = 3
 """Level of compression: the usual 6 takes more than twice as long for files 7 % smaller."""
 Made = TypeVar("Made")
@@ -30,17 +32,21 @@ def picture_suffix(picture: Picture) -> str:
 
 def encode_picture(picture: Picture) -> bytes:
     """A picture's file: JPEG for large opaque ones, PNG for the others."""
-    if picture_suffix(picture) == ".png":
-        return png_bytes(picture)
-    buffer = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(picture)).save(buffer, "JPEG", quality=JPEG_QUALITY)
-    return buffer.getvalue()
+    return (
+        png_bytes(picture)
+        if picture_suffix(picture) == ".png"
+        else _file_content(picture, "JPEG", quality=JPEG_QUALITY)
+    )
 
 
 def png_bytes(picture: Picture) -> bytes:
     """A picture as PNG."""
+    return _file_content(picture, "PNG", compress_level=PNG_LEVEL)
+
+
+def _file_content(picture: Picture, form: str, **options: int) -> bytes:
     buffer = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(picture)).save(buffer, "PNG", compress_level=PNG_LEVEL)
+    Image.fromarray(np.ascontiguousarray(picture)).save(buffer, form, **options)
     return buffer.getvalue()
 
 
@@ -80,9 +86,7 @@ def texture_file(picture: Picture) -> tuple[str, bytes]:
 
 def photo_text(photo: Picture) -> str:
     """A photo as JPEG in base 64, for files that hold text only."""
-    buffer = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(photo)).save(buffer, "JPEG", quality=JPEG_QUALITY)
-    return base64.b64encode(buffer.getvalue()).decode("ascii")
+    return base64.b64encode(_file_content(photo, "JPEG", quality=JPEG_QUALITY)).decode("ascii")
 
 
 def shrink(picture: Picture, max_px: int | None) -> Picture:
@@ -90,10 +94,38 @@ def shrink(picture: Picture, max_px: int | None) -> Picture:
     longest = max(picture.shape[:2])
     if max_px is None or longest <= max_px:
         return picture
-    width, height = (max(1, round(n * max_px / longest)) for n in (picture.shape[1], picture.shape[0]))
+    return _reduce(picture, *(round(n * max_px / longest) for n in picture.shape[:2]))
+
+
+def fit_pictures(scene: Scene, pictures: Mapping[str, Picture], side_px: int) -> Mapping[str, Picture]:
+    """The pictures, those that the scene shows reduced so that one square of that side would hold all of them.
+
+    No side of one is longer than the square's, and all are reduced by one factor where they have more texels together.
+    They stay pictures of their own rather than parts of one atlas: floors, walls and most materials repeat theirs,
+    which a part of an atlas cannot, and the few that do not (paintings, screens, rugs) are a small share of the texels.
+
+    Args:
+        scene: Whose planes and objects name them.
+        pictures: By name.
+        side_px: Of the square.
+    """
+    names = {p.texture for p in scene.architecture.planes}
+    names |= {m.texture for o in scene.objects for m in o.visible_materials}
+    shown = {name: _scale(p, side_px / max(p.shape[:2])) for name, p in pictures.items() if name in names}
+    texels = sum(p.shape[0] * p.shape[1] for p in shown.values())
+    factor = side_px / max(float(np.sqrt(texels)), 1.0)
+    return {**pictures, **{name: _scale(p, factor) for name, p in shown.items()}}
+
+
+def _scale(picture: Picture, factor: float) -> Picture:
+    """The picture made smaller; as it is where the factor would make it larger."""
+    return picture if factor >= 1.0 else _reduce(picture, *(int(n * factor) for n in picture.shape[:2]))
+
+
+def _reduce(picture: Picture, height: int, width: int) -> Picture:
     import cv2  # the editor opens without it
 
-    return np.asarray(cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA))
+    return np.asarray(cv2.resize(picture, (max(width, 1), max(height, 1)), interpolation=cv2.INTER_AREA))
 
 
 def power_of_two(picture: Picture) -> Picture:

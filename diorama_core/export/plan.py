@@ -80,6 +80,12 @@ class Dimension:
         return float(np.linalg.norm(self.end - self.start))
 
     @property
+    def text_angle_deg(self) -> float:
+        """Angle of the line for text that is read from below or from the right."""
+        along = self.end - self.start
+        return (float(np.degrees(np.arctan2(along[1], along[0]))) + 89.9) % 180.0 - 89.9
+
+    @property
     def text(self) -> str:
         """The length in metres as it is written."""
         return f"{self.length_m:.2f}"
@@ -281,10 +287,9 @@ def _is_before_a_wall(piece: manifold3d.CrossSection, walls: Sequence[DrawnWall]
     points = np.concatenate([np.asarray(o) for o in piece.to_polygons()])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     for wall in walls:
-        foot = wall.point_at(float((middle - wall.start) @ wall.direction))
-        inside = 0.0 <= float((middle - wall.start) @ wall.direction) <= wall.length_m
-        before = float((middle - wall.start) @ wall.outward) < 0.0
-        if inside and before and not any(_crosses(middle, foot, w) for w in walls if w is not wall):
+        along, behind = (float((middle - wall.start) @ axis) for axis in (wall.direction, wall.outward))
+        is_ahead = 0.0 <= along <= wall.length_m and behind < 0.0
+        if is_ahead and not any(_crosses(middle, wall.point_at(along), w) for w in walls if w is not wall):
             return True
     return False
 
@@ -300,12 +305,10 @@ def _crosses(start: Float[np.ndarray, "2"], end: Float[np.ndarray, "2"], wall: D
 
 def _piece(scene: ExportScene, item: ExportObject, outlines: tuple[Outline, ...]) -> Piece:
     bottom = float(item.item.corners_world[:, 2].min())
-    floor = scene.scene.architecture.floor
-    level = 0.0 if floor is None else float(floor.centre[2])
     roles = {p.id: p.plane.role for p in scene.planes}
     on_floor = item.support is None or roles.get(item.support.parent) == "floor"
     depth, width, height = (float(v) for v in item.item.size_m)
-    overhead = bottom - level > OVERHEAD_M
+    overhead = bottom - scene.floor_m > OVERHEAD_M
     label = "" if item.item.category in UNNAMED else item.item.label
     return Piece(item.id, label, outlines, (depth, width), height, overhead, on_floor, bottom)
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from diorama_core.export.plan import Dimension, FloorPlan, Piece
+from diorama_core.export.sharing import unique_name
 
 MM_PER_M = 1000.0
 LAYERS = {
@@ -88,7 +89,7 @@ def _add_piece(document: Any, space: Any, piece: Piece, taken: set[str]) -> None
     points = np.concatenate(piece.outlines)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
     layer = "OVERHEAD" if piece.overhead else "FURNITURE"
-    name = _block_name(piece, taken)
+    name = unique_name(re.sub(r"[^A-Za-z0-9_-]+", "_", piece.id) or "object", taken, "_")
     block = document.blocks.new(name)
     for outline in piece.outlines:
         block.add_lwpolyline((outline - middle) * MM_PER_M, close=True, dxfattribs={"layer": "0"})
@@ -110,20 +111,6 @@ def _middle() -> Any:
     return TextEntityAlignment.MIDDLE_CENTER
 
 
-def _block_name(piece: Piece, taken: set[str]) -> str:
-    stem = re.sub(r"[^A-Za-z0-9_-]+", "_", piece.id) or "object"
-    name, number = stem, 2
-    while name.lower() in taken:
-        name, number = f"{stem}_{number}", number + 1
-    taken.add(name.lower())
-    return name
-
-
-def _readable(angle_deg: float) -> float:
-    """Angle of the line for text that is read from below or from the right."""
-    return (angle_deg + 89.9) % 180.0 - 89.9
-
-
 def _dimension_style(document: Any) -> None:
     style = document.dimstyles.duplicate_entry("EZDXF", STYLE)
     style.dxf.dimtxt = TEXT_MM
@@ -139,14 +126,11 @@ def _dimension_style(document: Any) -> None:
 
 
 def _add_dimension(space: Any, dimension: Dimension) -> None:
-    start, end = dimension.start * MM_PER_M, dimension.end * MM_PER_M
-    base = (dimension.start + dimension.offset) * MM_PER_M
-    along = dimension.end - dimension.start
     space.add_linear_dim(
-        base=tuple(base),
-        p1=tuple(start),
-        p2=tuple(end),
-        angle=_readable(float(np.degrees(np.arctan2(along[1], along[0])))),
+        base=tuple((dimension.start + dimension.offset) * MM_PER_M),
+        p1=tuple(dimension.start * MM_PER_M),
+        p2=tuple(dimension.end * MM_PER_M),
+        angle=dimension.text_angle_deg,
         dimstyle=STYLE,
         dxfattribs={"layer": "DIMENSIONS"},
     ).render()

@@ -51,6 +51,11 @@ class Text:
     """`middle` or `start`."""
     group: str = "labels"
 
+    @property
+    def printable(self) -> str:
+        """The text without what no font has."""
+        return "".join(c for c in self.text if c.isprintable())
+
 
 @dataclass(frozen=True, eq=False)
 class PlanSheet:
@@ -157,8 +162,7 @@ def _dimension_marks(dimension: Dimension, to_page: _ToPage) -> list[SheetLine |
     lines = [np.stack([start, end]), *(np.stack([p - tick, p + tick]) for p in (start, end))]
     lines += [np.stack([p - 3.0 * away, p + 1.0 * away]) for p in (start, end)]
     marks: list[SheetLine | Text] = [SheetLine((line,), stroke_mm=0.13, group="dimensions") for line in lines]
-    turn = float(np.degrees(np.arctan2(along[1], along[0])))
-    turn = (turn + 89.9) % 180.0 - 89.9
+    turn = dimension.text_angle_deg
     up = np.array([-np.sin(np.radians(turn)), np.cos(np.radians(turn))])
     short = float(np.linalg.norm(end - start)) < LETTER * SMALL_MM * len(dimension.text)
     height = 0.7 * SMALL_MM if short else SMALL_MM

@@ -34,12 +34,7 @@ FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
 
 
 def write_ply(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write one mesh, whole or not at all.
-
-    Raises:
-        ExportError: when it cannot be written.
-        Cancelled: when asked to stop; what was there stays.
-    """
+    """Write one mesh, as `Writer` says."""
     with whole_file(Path(path)) as temporary, tempfile.TemporaryFile() as faces, tempfile.TemporaryFile() as vertices:
         vertex_count, face_count = _write_parts(scene, vertices, faces, progress)
         with temporary.open("wb") as stream:

@@ -13,9 +13,10 @@ from shapely.geometry.base import BaseGeometry
 
 from diorama_core.arrangement.surfaces import RestingSurface, object_surfaces
 from diorama_core.export.bodies import PhysicalScene, Points, RigidBody
-from diorama_core.export.gathering import ExportScene
+from diorama_core.export.gathering import ExportScene, shift
+from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.links import body_name
-from diorama_core.export.navigation import BodyOutline, floor_area, floor_level
+from diorama_core.export.navigation import BodyOutline, floor_area
 
 MIN_SIDE_M = 0.05
 """Surfaces narrower than this hold nothing that a robot would put down: edges of books, rims."""
@@ -55,13 +56,13 @@ def regions_of(gathered: ExportScene, physical: PhysicalScene, bodies: Sequence[
     """The floor first, then every level surface of the objects."""
     regions = [] if gathered.scene.architecture.floor is None else [_floor(gathered, bodies)]
     for body in physical.bodies:
-        for number, (part, surface) in enumerate(_surfaces(gathered, body)):
-            regions.append(_region(body, part, surface, number, bodies))
+        for number, (limb, surface) in enumerate(_surfaces(gathered, body)):
+            regions.append(_region(body, limb, surface, number, bodies))
     return tuple(regions)
 
 
 def _floor(gathered: ExportScene, bodies: Sequence[BodyOutline]) -> Region:
-    area, level = floor_area(gathered), floor_level(gathered)
+    area, level = floor_area(gathered), gathered.floor_m
     largest = max(getattr(area, "geoms", [area]), key=lambda part: part.area)
     flat = np.asarray(largest.exterior.coords)[:-1]
     polygon = np.column_stack([flat, np.full(len(flat), level)])
@@ -70,7 +71,7 @@ def _floor(gathered: ExportScene, bodies: Sequence[BodyOutline]) -> Region:
     return Region("floor_region", None, None, polygon, middle, size, np.inf, holds, free)
 
 
-def _surfaces(gathered: ExportScene, body: RigidBody) -> Iterator[tuple[str | None, RestingSurface]]:
+def _surfaces(gathered: ExportScene, body: RigidBody) -> Iterator[tuple[ExportLimb | None, RestingSurface]]:
     """Level surfaces of an object in its frame at its scale, wide enough, with the moving part that each lies on."""
     node = body.node
     shape = gathered.library.shape(node.item.shape_id)
@@ -80,7 +81,7 @@ def _surfaces(gathered: ExportScene, body: RigidBody) -> Iterator[tuple[str | No
         scaled = surface.transform(np.eye(3), np.zeros(3), node.scale)
         if min(np.ptp(scaled.polygon[:, :2], axis=0)) >= MIN_SIDE_M and node.T_world[2, 2] > LEVEL:
             below = scaled.polygon.mean(axis=0) - [0.0, 0.0, ABOVE_M]
-            yield next((m.limb.slug for m in body.moving if any(_holds(p, below) for p in m.parts)), None), scaled
+            yield next((m.limb for m in body.moving if any(_holds(p, below) for p in m.parts)), None), scaled
 
 
 def _holds(part: Points, point: Float[np.ndarray, "3"]) -> bool:
@@ -89,19 +90,10 @@ def _holds(part: Points, point: Float[np.ndarray, "3"]) -> bool:
 
 
 def _region(
-    body: RigidBody, part: str | None, surface: RestingSurface, number: int, bodies: Sequence[BodyOutline]
+    body: RigidBody, limb: ExportLimb | None, surface: RestingSurface, number: int, bodies: Sequence[BodyOutline]
 ) -> Region:
-    """One surface of an object, in the world as its part stands.
-
-    Args:
-        body: the object.
-        part: slug of the moving part that the surface lies on.
-        surface: in the object's frame, scale applied.
-        number: among the object's surfaces.
-        bodies: of all objects, seen from above.
-    """
+    """One surface of an object, given in its frame at its scale, in the world as its part stands."""
     node = body.node
-    limb = next((m.limb for m in body.moving if m.limb.slug == part), None)
     T = node.T_world if limb is None else node.T_world @ limb.T_object_limb
     polygon = surface.polygon @ T[:3, :3].T + T[:3, 3]
     high = min(surface.clearance_m, HEADROOM_M)
@@ -116,15 +108,7 @@ def _region(
 def _rest(
     area: BaseGeometry, level: float, headroom_m: float, bodies: Sequence[BodyOutline], owner: str | None
 ) -> tuple[BaseGeometry, tuple[str, ...]]:
-    """What of a surface nothing covers, and the ids of what stands on it.
-
-    Args:
-        area: the surface, in x and y.
-        level: its height in the world.
-        headroom_m: height above it that counts.
-        bodies: convex bodies of everything.
-        owner: id of the object that it belongs to, which does not cover it.
-    """
+    """What nothing but its owner covers of a surface, up to a headroom, and the ids of what stands on it."""
     lowest: dict[str, float] = {}
     covers = []
     for body in bodies:
@@ -139,7 +123,5 @@ def _rest(
 
 def _box(polygon: Float[np.ndarray, "n 3"]) -> tuple[Float[np.ndarray, "4 4"], tuple[float, float]]:
     """Where the middle of a polygon's box along the axes lies, and its sides."""
-    T = np.eye(4)
-    T[:3, 3] = (polygon.min(axis=0) + polygon.max(axis=0)) / 2
     width, depth = np.ptp(polygon[:, :2], axis=0)
-    return T, (float(width), float(depth))
+    return shift((polygon.min(axis=0) + polygon.max(axis=0)) / 2), (float(width), float(depth))

@@ -17,13 +17,12 @@ from diorama_core.export.bodies import MovingPart, RigidBody
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, write_package
 from diorama_core.export.gathering import ExportScene
-from diorama_core.export.links import body_name, collider_files, links_of, mesh_files
+from diorama_core.export.links import body_name, collider_files, links_of, mesh_files, numbers
 from diorama_core.export.mjcf import mjcf_text, texture_files
 from diorama_core.export.navigation import (
     HIGH_M,
     LOW_M,
     floor_area,
-    floor_level,
     free_spot,
     map_files,
     occupied_area,
@@ -35,7 +34,6 @@ from diorama_core.export.navigation import (
 from diorama_core.export.regions import Region, regions_of
 from diorama_core.export.sdf import sdf_files
 from diorama_core.export.urdf import urdf_files
-from diorama_core.export.xml_values import numbers
 from diorama_core.progress import SILENT, Progress
 
 FOLDER = "files"
@@ -79,8 +77,7 @@ def write_robot(gathered: ExportScene, path: Path, progress: Progress = SILENT) 
     texts |= sdf_files(gathered, physical, links, "room.sdf", FOLDER)
     texts["room.xml"] = with_sites(mjcf_text(gathered, physical, FOLDER), regions)
     texts["objects.json"] = _json({"objects": [_object(gathered, body) for body in physical.bodies]})
-    level = floor_level(gathered)
-    texts["regions.json"] = _json({"regions": [_region(r, level, walk, radius) for r in regions]})
+    texts["regions.json"] = _json({"regions": [_region(r, gathered.floor_m, walk, radius) for r in regions]})
     texts["navigation.json"] = _json({"radius_m": radius, "free": [rings(p) for p in walk]})
     limits = {"lift": MAX_LIFT_KG, "grasp": MAX_GRASP_M, "reach": REACH_M, "low": LOW_M, "high": HIGH_M}
     texts["README.md"] = README.format(name=gathered.name, radius=radius, **limits)
@@ -113,7 +110,7 @@ def _object(gathered: ExportScene, body: RigidBody) -> dict[str, Any]:
     """What a body is, for planners and for labels."""
     node, item = body.node, body.node.item
     mass = body.mass_kg + sum(m.inertia.mass_kg for m in body.moving)
-    sides = [float(v) for v in item.size_m]
+    narrowest = float(item.size_m.min())
     return {
         "body": node.slug,
         "id": node.id,
@@ -122,12 +119,12 @@ def _object(gathered: ExportScene, body: RigidBody) -> dict[str, Any]:
         "supporter": None if node.support is None else node.support.parent,
         "position_m": _round(node.T_world[:3, 3]),
         "rotation": _round(node.T_world[:3, :3], 6),
-        "size_m": _round(np.array(sides)),
+        "size_m": _round(item.size_m),
         "mass_kg": round(mass, 4),
         "friction": body.friction,
         "free": body.free,
-        "grasp_width_m": round(min(sides), 4),
-        "graspable": body.free and min(sides) <= MAX_GRASP_M and mass <= MAX_LIFT_KG,
+        "grasp_width_m": round(narrowest, 4),
+        "graspable": body.free and narrowest <= MAX_GRASP_M and mass <= MAX_LIFT_KG,
         "joints": [_joint(gathered, body, moving) for moving in body.moving],
     }
 
@@ -135,8 +132,7 @@ def _object(gathered: ExportScene, body: RigidBody) -> dict[str, Any]:
 def _joint(gathered: ExportScene, body: RigidBody, moving: MovingPart) -> dict[str, Any]:
     limb, node = moving.limb, body.node
     T = node.T_world @ limb.T_object_limb
-    vertices = np.concatenate([s.vertices for s in gathered.meshes[limb.mesh].surfaces]) * node.scale
-    handle, pull = handle_of(moving, vertices)
+    handle, pull = handle_of(moving, gathered.points_of(limb.mesh, node.scale))
     return {
         "name": body_name(node.slug, limb),
         "kind": limb.kind,
@@ -172,16 +168,12 @@ def handle_of(
 
 
 def _region(region: Region, level: float, walk: tuple[Polygon, ...], radius_m: float) -> dict[str, Any]:
-    """A region as JSON.
-
-    Args:
-        region: the surface.
-        level: height of the floor in the world.
-        walk: where the middle of a robot may be.
-        radius_m: of the robot.
-    """
+    """A region as JSON; `level` is the height of the floor, and the middle of a robot may be in `walk`."""
     height = float(region.polygon[:, 2].mean())
-    spot = None if region.free.is_empty else free_spot(region.free)
+    spot = None
+    if not region.free.is_empty:
+        at, free_m = free_spot(region.free)
+        spot = {"position_m": _round(np.array([*at.coords[0], height])), "radius_m": round(free_m, 4)}
     stand = standing_place(walk, region.free, radius_m, 0.0 if region.owner is None else REACH_M)
     return {
         "name": region.name,
@@ -193,13 +185,9 @@ def _region(region: Region, level: float, walk: tuple[Polygon, ...], radius_m: f
         "clearance_m": None if np.isinf(region.clearance_m) else round(region.clearance_m, 4),
         "holds": list(region.holds),
         "free_m2": round(float(region.free.area), 4),
-        "free_spot": None if spot is None else _spot(spot[0].coords[0], height, spot[1]),
+        "free_spot": spot,
         "stand": None if stand is None else dict(zip(("x", "y", "yaw"), np.round(stand, 4).tolist(), strict=True)),
     }
-
-
-def _spot(at: tuple[float, ...], height: float, radius_m: float) -> dict[str, Any]:
-    return {"position_m": _round(np.array([*at, height])), "radius_m": round(radius_m, 4)}
 
 
 def _round(values: Float[np.ndarray, "..."], digits: int = 4) -> list:

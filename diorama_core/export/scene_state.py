@@ -38,12 +38,7 @@ R_SHAPE_FILE = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
 def write_scene_state(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write the state (.json), or the state with its models (.zip), whole or not at all.
-
-    Raises:
-        ExportError: when it cannot be written.
-        Cancelled: when asked to stop; what was there stays.
-    """
+    """Write the state (.json), or the state with its models (.zip), as `Writer` says."""
     path = Path(path)
     text = json.dumps(scene_state(scene), indent=1, allow_nan=False)
     if path.suffix.lower() != ".zip":
@@ -203,7 +198,7 @@ def _asset(mesh: ExportMesh, texture_files: TextureFiles) -> bytes:
     document = GltfDocument(generator="Diorama", texture_files=texture_files)
     index = document.add_mesh(mesh.name, tuple(_turn(s, R_SHAPE_FILE) for s in mesh.surfaces))
     node = document.add("nodes", {"name": mesh.name, "mesh": index})
-    document.set_scene(document.add("scenes", {"name": "scene", "nodes": [node]}))
+    document.set_scene("scene", node)
     return document.glb()
 
 

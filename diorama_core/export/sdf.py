@@ -15,9 +15,17 @@ from scipy.spatial.transform import Rotation
 from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.gathering import ExportMesh, ExportScene
 from diorama_core.export.lights import ExportLight, MainLight
-from diorama_core.export.links import Link, collider_file, group, visual_file, write_linked
+from diorama_core.export.links import (
+    Link,
+    collider_file,
+    group,
+    inertia_terms,
+    numbers,
+    srgb_rgba,
+    visual_file,
+    write_linked,
+)
 from diorama_core.export.physics import FLOOR_FRICTION
-from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
 from diorama_core.progress import SILENT, Progress
 
 VERSION = "1.9"
@@ -29,11 +37,7 @@ FULL_LIGHT_LUX = 1000.0
 
 
 def write_sdf(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write an SDF world: `.sdf` with a folder beside it, or everything as one `.zip`.
-
-    Raises:
-        ExportError: when it cannot be written.
-    """
+    """Write an SDF world: `.sdf` with a folder beside it, or everything as one `.zip`, as `Writer` says."""
     write_linked(gathered, path, progress, "sdf", sdf_files)
 
 
@@ -51,7 +55,7 @@ def sdf_files(
     """
     root = Element("sdf", {"version": VERSION, "xmlns:drake": "http://drake.mit.edu"})
     world = SubElement(root, "world", name=gathered.name)
-    SubElement(world, "gravity").text = "0 0 -9.81"
+    _fill(world, gravity="0 0 -9.81")
     for light in gathered.lights:
         _light(world, f"{gathered.object(light.owner).slug}_light", light)
     if gathered.main_light is not None:
@@ -67,7 +71,7 @@ def _room(world: Element, gathered: ExportScene, physical: PhysicalScene, folder
     if not physical.slabs:
         return
     model = SubElement(world, "model", name=ROOM)
-    SubElement(model, "static").text = "1"  # PyBullet knows no other word
+    _fill(model, static="1")  # PyBullet knows no other word
     link = SubElement(model, "link", name="link")
     for exported in gathered.planes:
         _visuals(link, gathered.meshes[exported.mesh], np.ones(3), folder)
@@ -75,34 +79,33 @@ def _room(world: Element, gathered: ExportScene, physical: PhysicalScene, folder
         _colliders(link, slab.slug, len(slab.pieces), FLOOR_FRICTION, folder)
 
 
+def _fill(element: Element, **texts: str) -> None:
+    """Add elements that hold a text, by their names."""
+    for name, text in texts.items():
+        SubElement(element, name).text = text
+
+
 def _model(world: Element, links: tuple[Link, ...], folder: str) -> None:
     top = links[0]
     model = SubElement(world, "model", name=top.name)
-    SubElement(model, "pose").text = _pose(top.T_parent)
-    SubElement(model, "static").text = "0" if top.joint == "free" or len(links) > 1 else "1"
+    _fill(model, pose=_pose(top.T_parent), static="0" if top.joint == "free" or len(links) > 1 else "1")
     places: dict[str, Float[np.ndarray, "4 4"]] = {top.name: np.eye(4)}
     for link in links:
         if link is not top and link.parent is not None:
             places[link.name] = places[link.parent] @ link.T_parent
         _link(model, link, places[link.name], folder)
     if top.joint == "fixed" and len(links) > 1:  # its moving parts may move, so the model is not static
-        joint = SubElement(model, "joint", name="to_room", type="fixed")
-        SubElement(joint, "parent").text = "world"
-        SubElement(joint, "child").text = top.name
-    for link in links:
-        if link is not top:
-            _joint(model, link)
+        _fill(SubElement(model, "joint", name="to_room", type="fixed"), parent="world", child=top.name)
+    for link in links[1:]:
+        _joint(model, link)
 
 
 def _link(model: Element, link: Link, T_model: Float[np.ndarray, "4 4"], folder: str) -> None:
     element = SubElement(model, "link", name=link.name)
-    SubElement(element, "pose").text = _pose(T_model)
+    _fill(element, pose=_pose(T_model))
     inertial = SubElement(element, "inertial")
-    SubElement(inertial, "pose").text = f"{numbers(link.inertia.centre)} 0 0 0"
-    SubElement(inertial, "mass").text = f"{link.inertia.mass_kg:.6g}"
-    tensor = SubElement(inertial, "inertia")
-    for name, value in inertia_terms(link.inertia.tensor).items():
-        SubElement(tensor, name).text = value
+    _fill(inertial, pose=f"{numbers(link.inertia.centre)} 0 0 0", mass=f"{link.inertia.mass_kg:.6g}")
+    _fill(SubElement(inertial, "inertia"), **inertia_terms(link.inertia.tensor))
     _visuals(element, link.mesh, link.scale, folder)
     _colliders(element, link.name, len(link.parts), link.friction, folder)
 
@@ -112,68 +115,55 @@ def _joint(model: Element, link: Link) -> None:
     joint = SubElement(model, "joint", name=f"{link.name}_joint", type=kinds.get(link.joint, "fixed"))
     limb = link.limb
     if limb is not None:
-        SubElement(joint, "pose").text = f"{numbers(limb.origin)} 0 0 0"
-    SubElement(joint, "parent").text = link.parent
-    SubElement(joint, "child").text = link.name
+        _fill(joint, pose=f"{numbers(limb.origin)} 0 0 0")
+    _fill(joint, parent=str(link.parent), child=link.name)
     if limb is None:
         return
     axis = SubElement(joint, "axis")
-    SubElement(axis, "xyz").text = numbers(limb.axis)
+    _fill(axis, xyz=numbers(limb.axis))
     if link.limits is not None:
-        limit = SubElement(axis, "limit")
-        SubElement(limit, "lower").text = f"{link.limits[0]:.8g}"
-        SubElement(limit, "upper").text = f"{link.limits[1]:.8g}"
-    dynamics = SubElement(axis, "dynamics")
-    SubElement(dynamics, "damping").text = "1.0"
-    SubElement(dynamics, "friction").text = f"{link.joint_friction:.4g}"
+        lower, upper = (f"{limit:.8g}" for limit in link.limits)
+        _fill(SubElement(axis, "limit"), lower=lower, upper=upper)
+    _fill(SubElement(axis, "dynamics"), damping="1.0", friction=f"{link.joint_friction:.4g}")
 
 
 def _visuals(element: Element, mesh: ExportMesh, scale: Float[np.ndarray, "3"], folder: str) -> None:
     for number, surface in enumerate(mesh.surfaces):
         visual = SubElement(element, "visual", name=f"{mesh.key}_{number}")
         shape = SubElement(SubElement(visual, "geometry"), "mesh")
-        SubElement(shape, "uri").text = visual_file(folder, mesh, number)
-        SubElement(shape, "scale").text = numbers(scale)
+        _fill(shape, uri=visual_file(folder, mesh, number), scale=numbers(scale))
         if surface.material.texture is None:  # textured ones keep what their own file says
-            material = SubElement(visual, "material")
-            for slot in ("ambient", "diffuse"):
-                SubElement(material, slot).text = numbers(srgb_rgba(surface.material))
+            colour = numbers(srgb_rgba(surface.material))
+            _fill(SubElement(visual, "material"), ambient=colour, diffuse=colour)
 
 
 def _colliders(element: Element, owner: str, count: int, friction: float, folder: str) -> None:
     for number in range(count):
         collision = SubElement(element, "collision", name=f"{owner}_part_{number}")
         shape = SubElement(SubElement(collision, "geometry"), "mesh")
-        SubElement(shape, "uri").text = collider_file(folder, owner, number)
+        _fill(shape, uri=collider_file(folder, owner, number))
         SubElement(shape, "drake:declare_convex")
         drake = SubElement(collision, "drake:proximity_properties")  # else bodies touch at one point alone there
         SubElement(drake, "drake:compliant_hydroelastic")
         SubElement(drake, "drake:hydroelastic_modulus").text = HYDROELASTIC_MODULUS
         grip = SubElement(SubElement(SubElement(collision, "surface"), "friction"), "ode")
-        SubElement(grip, "mu").text = f"{friction:.3g}"
-        SubElement(grip, "mu2").text = f"{friction:.3g}"
+        _fill(grip, mu=f"{friction:.3g}", mu2=f"{friction:.3g}")
 
 
 def _light(world: Element, name: str, light: ExportLight) -> None:
     element = SubElement(world, "light", name=name, type="point" if light.kind == "lamp" else "spot")
-    SubElement(element, "pose").text = _pose(light.T_world)
-    SubElement(element, "diffuse").text = f"{numbers(np.asarray(light.colour))} 1"
-    attenuation = SubElement(element, "attenuation")
-    for key, value in (("range", "20"), ("constant", "0.3"), ("linear", "0.1"), ("quadratic", "0.1")):
-        SubElement(attenuation, key).text = value
+    _fill(element, pose=_pose(light.T_world), diffuse=f"{numbers(np.asarray(light.colour))} 1")
+    _fill(SubElement(element, "attenuation"), range="20", constant="0.3", linear="0.1", quadratic="0.1")
     if light.kind == "window":
-        SubElement(element, "direction").text = "0 0 -1"
-        spot = SubElement(element, "spot")
-        for key, value in (("inner_angle", "0.5"), ("outer_angle", "1.5"), ("falloff", "1")):
-            SubElement(spot, key).text = value
+        _fill(element, direction="0 0 -1")
+        _fill(SubElement(element, "spot"), inner_angle="0.5", outer_angle="1.5", falloff="1")
 
 
 def _main_light(world: Element, light: MainLight) -> None:
     element = SubElement(world, "light", name="main_light", type="directional")
-    SubElement(element, "pose").text = _pose(light.T_world)
-    SubElement(element, "diffuse").text = f"{numbers(np.asarray(light.colour))} 1"
-    SubElement(element, "intensity").text = f"{min(light.lux / FULL_LIGHT_LUX, 1.0):.3g}"
-    SubElement(element, "direction").text = "0 0 -1"
+    strength = f"{min(light.lux / FULL_LIGHT_LUX, 1.0):.3g}"
+    _fill(element, pose=_pose(light.T_world), diffuse=f"{numbers(np.asarray(light.colour))} 1")
+    _fill(element, intensity=strength, direction="0 0 -1")
 
 
 def _pose(T: Float[np.ndarray, "4 4"]) -> str:

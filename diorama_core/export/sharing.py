@@ -1,16 +1,20 @@
-"""Materials, pictures and surfaces of an export: each once, and fit to be written."""
+"""Materials, pictures and surfaces of an export: each once, and fit to be written; names, each used once, because many
+programs address nodes by name.
+"""
 
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from jaxtyping import Integer
 
-from diorama_core.export.names import unique_name
 from diorama_core.export.pictures import Picture, shrink
+from diorama_core.io.text import clean_text
 from diorama_core.render.appearance import Material, Surface
 
 MIN_AREA_M2 = 1e-12
@@ -70,15 +74,23 @@ def without_slivers(surface: Surface) -> Surface:
     sound = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1) > MIN_AREA_M2
     if sound.all():
         return surface
-    faces = surface.faces[sound]
-    used = np.unique(faces)
+    return without_unused(surface, surface.faces[sound])
+
+
+def without_unused(surface: Surface, faces: Integer[np.ndarray, "..."]) -> Surface:
+    """The surface with these faces alone, without the vertices that none of them uses."""
+    return with_vertices(surface, *np.unique(faces, return_inverse=True))
+
+
+def with_vertices(surface: Surface, rows: Integer[np.ndarray, " n"], faces: Integer[np.ndarray, "..."]) -> Surface:
+    """The surface with these rows of its vertices, between which the faces are."""
     return replace(
         surface,
-        vertices=surface.vertices[used],
-        normals=surface.normals[used],
-        faces=np.searchsorted(used, faces).astype(np.int32),
-        uv=None if surface.uv is None else surface.uv[used],
-        colours=None if surface.colours is None else surface.colours[used],
+        vertices=surface.vertices[rows],
+        normals=surface.normals[rows],
+        faces=faces.reshape(-1, 3).astype(np.int32),
+        uv=None if surface.uv is None else surface.uv[rows],
+        colours=None if surface.colours is None else surface.colours[rows],
     )
 
 
@@ -96,3 +108,40 @@ def with_unit_normals(surface: Surface) -> Surface:
     for corner in range(3):
         of_face[surface.faces[:, corner]] = flat
     return replace(surface, normals=np.where(lost[:, None], of_face, normals).astype(np.float32))
+
+
+class Labels:
+    """Gives out names, slugs and keys, each of them unique among its kind."""
+
+    def __init__(self) -> None:
+        self._names, self._slugs, self._keys = set[str](), set[str](), set[str]()
+
+    def name(self, text: str) -> str:
+        """A readable name."""
+        return unique_name(clean_text(text) or "object", self._names, " ")
+
+    def slug(self, text: str) -> str:
+        """An identifier of a node."""
+        return unique_name(slug_of(text), self._slugs, "_")
+
+    def key(self, text: str) -> str:
+        """An identifier of a mesh."""
+        return unique_name(slug_of(text), self._keys, "_")
+
+
+def slug_of(text: str) -> str:
+    """An ASCII identifier that resembles the text: a letter first, then letters, digits and underscores."""
+    plain = re.sub(r"[^A-Za-z0-9]+", "_", text).strip("_")
+    return plain if plain[:1].isalpha() else f"n_{plain}".rstrip("_")
+
+
+def unique_name(text: str, taken: set[str], separator: str = " ") -> str:
+    """The text, with a number where it was used before; `taken` is extended.
+
+    Case is ignored, because some disks do so when files are named by it; `taken` holds case-folded names.
+    """
+    candidate, number = text, 2
+    while candidate.casefold() in taken:
+        candidate, number = f"{text}{separator}{number}", number + 1
+    taken.add(candidate.casefold())
+    return candidate

@@ -1,28 +1,35 @@
-"""What gravity does to an exported scene: two simulated seconds in MuJoCo."""
+"""What gravity does to an exported scene, in MuJoCo: two simulated seconds, or as long as somebody plays with it."""
 
 from __future__ import annotations
 
 import json
 import tempfile
 import zipfile
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float
 
 from diorama_core.errors import UnavailableError
+from diorama_core.export.bodies import PhysicalScene
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import companion_folder
 from diorama_core.export.gathering import ExportScene
 from diorama_core.export.mjcf import mjcf_text
 from diorama_core.export.physics import GRAVITY
 from diorama_core.export.urdf import POSES
+from diorama_core.geometry.rotations import quaternion_wxyz, rotation_from_quaternion
+from diorama_core.scene.types import Pose
 
 MAX_DRIFT_M = 0.01
 MAX_TURN_RAD = float(np.radians(2.0))
 FALLEN_M, TIPPED_DEG = 0.1, 30.0
 """What is lower by more has fallen off what it stood on; what tips farther does not come back."""
+PUSH_M_S = 1.5
+"""Speed that a push gives an object, whatever its mass."""
 
 
 @dataclass(frozen=True)
@@ -100,17 +107,10 @@ def stability(
     Raises:
         UnavailableError: when MuJoCo is not installed.
     """
-    try:
-        import mujoco
-    except ImportError as missing:
-        raise UnavailableError("simulating needs MuJoCo: pip install 'diorama[sim]'") from missing
-    physical = physical_scene(gathered)
+    mujoco, physical = _mujoco("simulating"), physical_scene(gathered)
     model = mujoco.MjModel.from_xml_string(mjcf_text(gathered, physical)) if urdf is None else urdf_model(urdf)
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    numbers = {model.body(k).name.rpartition("/")[2]: k for k in range(model.nbody)}
-    numbers = {b.node.id: numbers[b.node.slug] for b in physical.bodies}
-    before = {i: (data.xpos[k].copy(), data.xmat[k].reshape(3, 3).copy()) for i, k in numbers.items()}
+    data, numbers = _start(mujoco, model, physical)
+    first = {i: _rigid(data, k) for i, k in numbers.items()}
     seconds += 0.0 if shake is None else shake.seconds
     for _ in range(round(seconds / model.opt.timestep)):
         if shake is not None:
@@ -119,22 +119,44 @@ def stability(
         mujoco.mj_step(model, data)
     drifts = []
     for body in physical.bodies:
-        (position, R), number = before[body.node.id], numbers[body.node.id]
-        cosine = (np.trace(data.xmat[number].reshape(3, 3) @ R.T) - 1.0) / 2.0
-        moved = float(np.linalg.norm(data.xpos[number] - position))
-        turned = float(np.arccos(np.clip(cosine, -1.0, 1.0)))
-        fallen = float(position[2] - data.xpos[number][2])
-        tilted = float(np.degrees(np.arccos(np.clip(data.xmat[number].reshape(3, 3)[:, 2] @ R[:, 2], -1.0, 1.0))))
-        drifts.append(Drift(body.node.id, moved, turned, body.free, fallen, tilted))
+        before, after = first[body.node.id], _rigid(data, numbers[body.node.id])
+        moved = float(np.linalg.norm(after[:3, 3] - before[:3, 3]))
+        turned = _angle_rad((np.trace(after[:3, :3] @ before[:3, :3].T) - 1.0) / 2.0)
+        tilted = float(np.degrees(_angle_rad(after[:3, 2] @ before[:3, 2])))
+        drifts.append(Drift(body.node.id, moved, turned, body.free, float(before[2, 3] - after[2, 3]), tilted))
     return StabilityReport(tuple(drifts), physical.notes, seconds)
 
 
-def urdf_model(path: Path) -> Any:
-    """MuJoCo's model of a room in URDF with its objects at their poses (`mujoco.MjModel`).
+def _mujoco(doing: str) -> Any:
+    """MuJoCo's module, which `doing` something needs."""
+    try:
+        import mujoco
+    except ImportError as missing:
+        raise UnavailableError(f"{doing} needs MuJoCo: pip install 'diorama[sim]'") from missing
+    return mujoco
 
-    Args:
-        path: The room's file, or the `.zip`.
-    """
+
+def _start(mujoco: Any, model: Any, physical: PhysicalScene) -> tuple[Any, dict[str, int]]:
+    """The state of a model in which nothing moves yet, and the number of each object's body by its id."""
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    numbers = {model.body(k).name.rpartition("/")[2]: k for k in range(model.nbody)}
+    return data, {b.node.id: numbers[b.node.slug] for b in physical.bodies}
+
+
+def _rigid(data: Any, number: int) -> Float[np.ndarray, "4 4"]:
+    """Where a body is in the world now."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = data.xmat[number].reshape(3, 3), data.xpos[number]
+    return T
+
+
+def _angle_rad(cosine: float) -> float:
+    return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
+
+def urdf_model(path: Path) -> Any:
+    """MuJoCo's model (`mujoco.MjModel`) of a room's URDF, or `.zip`, with its objects at their poses."""
     import mujoco
 
     with tempfile.TemporaryDirectory() as unpacked:
@@ -149,3 +171,54 @@ def urdf_model(path: Path) -> Any:
             frame = room.worldbody.add_frame(pos=pose["position_m"], quat=pose["quaternion_wxyz"])
             frame.attach_body(thing.worldbody.first_body(), f"{pose['name']}/", "").add_freejoint()
         return room.compile()
+
+
+class Playground:
+    """A scene to play with: gravity and pushes, step by step, with the poses that objects have then."""
+
+    def __init__(self, gathered: ExportScene) -> None:
+        """Make MuJoCo's model of a scene; nothing moves yet.
+
+        Raises:
+            UnavailableError: MuJoCo is not installed.
+        """
+        self._mujoco, physical = _mujoco("playing"), physical_scene(gathered)
+        self._model = self._mujoco.MjModel.from_xml_string(mjcf_text(gathered, physical))
+        self._data, numbers = _start(self._mujoco, self._model, physical)
+        self._numbers = {b.node.id: numbers[b.node.id] for b in physical.bodies if b.free}
+        self._first = {i: _rigid(self._data, k) for i, k in self._numbers.items()}
+        self._items = {o.id: o for o in gathered.scene.objects}
+
+    @property
+    def movable(self) -> frozenset[str]:
+        """Ids of the objects that can move."""
+        return frozenset(self._numbers)
+
+    @property
+    def seconds(self) -> float:
+        """Simulated so far."""
+        return float(self._data.time)
+
+    def step(self, seconds: float) -> None:
+        """Let time go on."""
+        for _ in range(round(seconds / self._model.opt.timestep)):
+            self._mujoco.mj_step(self._model, self._data)
+
+    def push(self, object_id: str, direction: Float[np.ndarray, "3"]) -> bool:
+        """Push an object along a direction of the world; False where it is fixed."""
+        number = self._numbers.get(object_id)
+        if number is None:
+            return False
+        first = int(self._model.jnt_dofadr[self._model.body_jntadr[number]])
+        self._data.qvel[first : first + 3] += PUSH_M_S * direction / max(float(np.linalg.norm(direction)), 1e-9)
+        return True
+
+    def poses(self) -> Mapping[str, Pose]:
+        """Poses of the objects that can move."""
+        return {i: self._pose(i, _rigid(self._data, k)) for i, k in self._numbers.items()}
+
+    def _pose(self, object_id: str, now: Float[np.ndarray, "4 4"]) -> Pose:
+        pose, moved = self._items[object_id].pose, now @ np.linalg.inv(self._first[object_id])
+        position = moved[:3, :3] @ pose.position + moved[:3, 3]
+        R = rotation_from_quaternion(quaternion_wxyz(moved[:3, :3] @ pose.R_world_object))  # exactly orthonormal
+        return replace(pose, R_world_object=R, position=position)

@@ -18,12 +18,7 @@ TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribu
 
 
 def write_stl(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write all triangles, whole or not at all.
-
-    Raises:
-        ExportError: when it cannot be written.
-        Cancelled: when asked to stop; what was there stays.
-    """
+    """Write all triangles, as `Writer` says."""
     with whole_file(Path(path)) as temporary, temporary.open("wb") as stream:
         stream.write(b"Diorama: millimetres, +Z up".ljust(80, b" ") + struct.pack("<I", 0))
         count = 0

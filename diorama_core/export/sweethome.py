@@ -40,12 +40,7 @@ SLACK_M = 0.02
 
 
 def write_sweet_home(scene: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write the home, whole or not at all.
-
-    Raises:
-        ExportError: when it cannot be written.
-        Cancelled: when asked to stop; what was there stays.
-    """
+    """Write the home, as `Writer` says."""
     with whole_file(Path(path)) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         models: dict[str, str] = {}
         for number, (key, name, content) in enumerate(_model_files(scene)):
@@ -112,7 +107,7 @@ def _piece(scene: ExportScene, item: ExportObject, model: str, wall_m: float | N
         x, y, _ = item.T_world[:3, 3]
         yaw = float(np.arctan2(item.T_world[1, 0], item.T_world[0, 0]))
     else:
-        points = _world_points(scene, item)
+        points = scene.points_of(item.mesh, item.scale) @ item.T_world[:3, :3].T + item.T_world[:3, 3]
         low, high = points.min(axis=0), points.max(axis=0)
         depth, width, height = (float(v) for v in high - low)
         (x, y, _), yaw = (low + high) / 2, 0.0
@@ -156,16 +151,6 @@ def _colour(srgb: Iterable[float]) -> str:
     return "FF" + "".join(f"{round(255 * min(max(c, 0.0), 1.0)):02X}" for c in srgb)
 
 
-def _floor_m(scene: ExportScene) -> float:
-    floor = scene.scene.architecture.floor
-    return 0.0 if floor is None else float(floor.centre[2])
-
-
-def _world_points(scene: ExportScene, item: ExportObject) -> Float[np.ndarray, "n 3"]:
-    points = np.concatenate([s.vertices for s in scene.meshes[item.mesh].surfaces])
-    return (points * item.scale) @ item.T_world[:3, :3].T + item.T_world[:3, 3]
-
-
 def _wall(wall: DrawnWall, number: int) -> dict[str, str]:
     """The wall's middle line; its inner face is where the scene has it."""
     half = wall.plane.thickness / 2
@@ -193,7 +178,7 @@ def _add_level(home: ET.Element, scene: ExportScene, storey: int, rooms: Sequenc
     attributes = {
         "id": f"level{storey}",
         "name": name,
-        "elevation": _cm(low_m - _floor_m(scene)),
+        "elevation": _cm(low_m - scene.floor_m),
         "floorThickness": _cm(floors[0].thickness),
         "height": _cm(max(tops, default=low_m) - low_m),
         "elevationIndex": "0",
@@ -205,7 +190,7 @@ def _add_level(home: ET.Element, scene: ExportScene, storey: int, rooms: Sequenc
 def _level_of(scene: ExportScene, part: str, levels: Mapping[int, tuple[str, float]]) -> tuple[dict[str, str], float]:
     """The level attribute of a plane or an object, and the height that it is measured from (m)."""
     if not levels:
-        return {}, _floor_m(scene)
+        return {}, scene.floor_m
     room = scene.room_of.get(part)
     level, low_m = levels[min(levels) if room is None else room.storey]
     return {"level": level}, low_m

@@ -19,7 +19,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.lighting import Lighting, studio
 from diorama_core.render.picture import ORBIT_ELEVATION_RAD, looking_along, picture
-from diorama_core.scene.types import Camera, Intrinsics, Scene
+from diorama_core.scene.types import Camera, Intrinsics, Scene, SceneObject
 
 Frame = UInt8[np.ndarray, "h w 3"]
 SIZE = (640, 480)
@@ -63,16 +63,21 @@ def write_turntable(
         raise UnavailableError("MP4 needs an optional library: pip install 'diorama[video]' (or choose a .gif)")
     if write is _write_mp4 and (size[0] % 2 or size[1] % 2):
         raise ExportError(f"a film of {size[0]}x{size[1]} cannot be made; both sides must be even")
-    cameras = orbit_cameras(scene, frames, size)
+
+    def pictures() -> Iterator[Frame]:
+        light = _steady_light(scene)
+        for number, camera in enumerate(orbit_cameras(scene, frames, size)):
+            progress.report(number / frames, f"frame {number + 1} of {frames}")
+            yield picture(replace(scene, camera=camera), library, textures=textures, light=light)
+        progress.report(1.0, "finishing the film")
+
     with whole_file(path) as temporary:
-        write(_frames(scene, library, cameras, textures, progress), temporary)
+        write(pictures(), temporary)
 
 
 def orbit_cameras(scene: Scene, count: int, size: tuple[int, int]) -> tuple[Camera, ...]:
     """Cameras on a circle around the scene, all at one distance, from which everything is in the picture."""
-    points = [p.polygon for p in scene.architecture.planes]
-    points += [o.corners_world for o in scene.objects if not o.hidden]
-    every = np.concatenate(points) if points else np.array([[-0.5, -0.5, 0.0], [0.5, 0.5, 1.0]])
+    every = _corners(scene, [o for o in scene.objects if not o.hidden])
     centre = (every.min(axis=0) + every.max(axis=0)) / 2
     width, height = size
     focal = 0.5 * min(size) / float(np.tan(0.5 * FOV_RAD))
@@ -88,6 +93,12 @@ def orbit_cameras(scene: Scene, count: int, size: tuple[int, int]) -> tuple[Came
     return tuple(cameras)
 
 
+def _corners(scene: Scene, objects: Iterable[SceneObject]) -> Float[np.ndarray, "n 3"]:
+    """Corners of the room and of objects; those of a box where there are none."""
+    points = [*(p.polygon for p in scene.architecture.planes), *(o.corners_world for o in objects)]
+    return np.concatenate(points) if points else np.array([[-0.5, -0.5, 0.0], [0.5, 0.5, 1.0]])
+
+
 def _axes(angle_rad: float) -> Float[np.ndarray, "3 3"]:
     flat = np.array([-np.sin(angle_rad), np.cos(angle_rad), 0.0]) * np.cos(ORBIT_ELEVATION_RAD)
     return looking_along(flat - np.array([0.0, 0.0, np.sin(ORBIT_ELEVATION_RAD)]))
@@ -98,25 +109,9 @@ def _distance(points_camera: Float[np.ndarray, "n 3"], slope: Float[np.ndarray, 
     return float((np.abs(points_camera[:, :2]) / slope - points_camera[:, 2:]).max())
 
 
-def _frames(
-    scene: Scene,
-    library: ShapeLibrary,
-    cameras: Iterable[Camera],
-    textures: Mapping[str, UInt8[np.ndarray, "_ _ _"]] | None,
-    progress: Progress,
-) -> Iterator[Frame]:
-    cameras = tuple(cameras)
-    light = _steady_light(scene)
-    for number, camera in enumerate(cameras):
-        progress.report(number / len(cameras), f"frame {number + 1} of {len(cameras)}")
-        yield picture(replace(scene, camera=camera), library, textures=textures, light=light)
-    progress.report(1.0, "finishing the film")
-
-
 def _steady_light(scene: Scene) -> Lighting:
     """Light that stays where it is while the viewer walks around."""
-    points = [p.polygon for p in scene.architecture.planes] + [o.corners_world for o in scene.objects]
-    every = np.concatenate(points) if points else np.array([[-0.5, -0.5, 0.0], [0.5, 0.5, 1.0]])
+    every = _corners(scene, scene.objects)
     return studio(np.stack([every.min(axis=0), every.max(axis=0)]), np.array([0.0, -1.0, 0.0]))
 
 

@@ -7,6 +7,7 @@ prismatic and continuous joints with limits.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
@@ -16,10 +17,18 @@ from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
 from diorama_core.export.bodies import PhysicalScene
-from diorama_core.export.gathering import ExportMesh, ExportScene
-from diorama_core.export.links import Link, collider_file, group, visual_file, write_linked
-from diorama_core.export.physics import Inertia
-from diorama_core.export.xml_values import inertia_terms, numbers, srgb_rgba
+from diorama_core.export.gathering import ExportMesh, ExportScene, shift
+from diorama_core.export.links import (
+    Link,
+    collider_file,
+    group,
+    inertia_terms,
+    numbers,
+    srgb_rgba,
+    visual_file,
+    write_linked,
+)
+from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.progress import SILENT, Progress
 
 WORLD, POSES = "world", "poses.json"
@@ -28,11 +37,7 @@ _TYPES = {"fixed": "fixed", "hinge": "revolute", "slide": "prismatic", "swivel":
 
 
 def write_urdf(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write a URDF: `.urdf` with a folder beside it, or everything as one `.zip`.
-
-    Raises:
-        ExportError: when it cannot be written.
-    """
+    """Write a URDF: `.urdf` with a folder beside it, or everything as one `.zip`, as `Writer` says."""
     write_linked(gathered, path, progress, "urdf", urdf_files)
 
 
@@ -51,28 +56,19 @@ def urdf_files(
     models = group(links)
     free = {name: model for name, model in models.items() if model[0].joint == "free"}
     fixed = [link for name, model in models.items() if name not in free for link in model]
-    files = {f"{folder}/{name}.urdf": _object(name, model) for name, model in free.items()}
+    files = {f"{folder}/{name}.urdf": _text(_robot(name), model, ".") for name, model in free.items()}
     poses = [
         {
             "name": name,
             "file": f"{name}.urdf",
             "position_m": [float(v) for v in model[0].T_parent[:3, 3]],
-            "quaternion_wxyz": Rotation.from_matrix(model[0].T_parent[:3, :3])
-            .as_quat(canonical=True, scalar_first=True)
-            .tolist(),
+            "quaternion_wxyz": quaternion_wxyz(model[0].T_parent[:3, :3]).tolist(),
         }
         for name, model in free.items()
     ]
     files[f"{folder}/{POSES}"] = json.dumps({"objects": poses}, indent=1) + "\n"
     files[main] = _room(gathered, physical, fixed, folder)
     return files
-
-
-def _object(name: str, links: tuple[Link, ...]) -> str:
-    robot = _robot(name)
-    for link in links:
-        _link(robot, link, ".")
-    return _text(robot)
 
 
 def _room(gathered: ExportScene, physical: PhysicalScene, links: list[Link], folder: str) -> str:
@@ -83,9 +79,7 @@ def _room(gathered: ExportScene, physical: PhysicalScene, links: list[Link], fol
         _visuals(world, gathered.meshes[exported.mesh], np.ones(3), folder)
     for slab in physical.slabs:
         _colliders(world, slab.slug, len(slab.pieces), folder)
-    for link in links:
-        _link(robot, link, folder)
-    return _text(robot)
+    return _text(robot, links, folder)
 
 
 def _robot(name: str) -> Element:
@@ -95,14 +89,20 @@ def _robot(name: str) -> Element:
     return robot
 
 
-def _text(robot: Element) -> str:
+def _text(robot: Element, links: Iterable[Link], folder: str) -> str:
+    """A file with some links."""
+    for link in links:
+        _link(robot, link, folder)
     indent(robot)
     return '<?xml version="1.0"?>\n' + tostring(robot, encoding="unicode") + "\n"
 
 
 def _link(robot: Element, link: Link, folder: str) -> None:
     element = SubElement(robot, "link", name=link.name)
-    _inertial(element, link.inertia)
+    inertial = SubElement(element, "inertial")
+    SubElement(inertial, "origin", xyz=numbers(link.inertia.centre), rpy="0 0 0")
+    SubElement(inertial, "mass", value=f"{link.inertia.mass_kg:.6g}")
+    SubElement(inertial, "inertia", inertia_terms(link.inertia.tensor))
     _visuals(element, link.mesh, link.scale, folder)
     _colliders(element, link.name, len(link.parts), folder)
     contact = SubElement(element, "contact")
@@ -117,9 +117,7 @@ def _link(robot: Element, link: Link, folder: str) -> None:
         SubElement(joint, "origin", _origin(link.T_parent))
         return
     # A moving link's frame lies on its axis: its geometry is shifted back by as much.
-    on_axis = np.eye(4)
-    on_axis[:3, 3] = limb.origin
-    SubElement(joint, "origin", _origin(link.T_parent @ on_axis))
+    SubElement(joint, "origin", _origin(link.T_parent @ shift(limb.origin)))
     SubElement(joint, "axis", xyz=numbers(limb.axis))
     SubElement(joint, "dynamics", damping="1.0", friction=f"{link.joint_friction:.4g}")
     limits = {"effort": EFFORT_N, "velocity": VELOCITY}
@@ -130,19 +128,13 @@ def _link(robot: Element, link: Link, folder: str) -> None:
         origin.set("xyz", numbers(np.array(origin.get("xyz", "").split(), dtype=float) - limb.origin))
 
 
-def _inertial(element: Element, inertia: Inertia) -> None:
-    inertial = SubElement(element, "inertial")
-    SubElement(inertial, "origin", xyz=numbers(inertia.centre), rpy="0 0 0")
-    SubElement(inertial, "mass", value=f"{inertia.mass_kg:.6g}")
-    SubElement(inertial, "inertia", inertia_terms(inertia.tensor))
-
-
 def _visuals(element: Element, mesh: ExportMesh, scale: Float[np.ndarray, "3"], folder: str) -> None:
     for number, surface in enumerate(mesh.surfaces):
         visual = SubElement(element, "visual")
         SubElement(visual, "origin", xyz="0 0 0", rpy="0 0 0")
-        geometry = SubElement(visual, "geometry")
-        SubElement(geometry, "mesh", filename=visual_file(folder, mesh, number), scale=numbers(scale))
+        SubElement(
+            SubElement(visual, "geometry"), "mesh", filename=visual_file(folder, mesh, number), scale=numbers(scale)
+        )
         material = SubElement(visual, "material", name=f"{mesh.key}_{number}")
         seen = surface.material
         if seen.texture is not None:  # its colour is in the picture, by which programs multiply this one
@@ -154,10 +146,8 @@ def _colliders(element: Element, owner: str, count: int, folder: str) -> None:
     for number in range(count):
         collision = SubElement(element, "collision", name=f"{owner}_part_{number}")
         SubElement(collision, "origin", xyz="0 0 0", rpy="0 0 0")
-        geometry = SubElement(collision, "geometry")
-        SubElement(geometry, "mesh", filename=collider_file(folder, owner, number))
+        SubElement(SubElement(collision, "geometry"), "mesh", filename=collider_file(folder, owner, number))
 
 
 def _origin(T: Float[np.ndarray, "4 4"]) -> dict[str, str]:
-    roll, pitch, yaw = Rotation.from_matrix(T[:3, :3]).as_euler("xyz")
-    return {"xyz": numbers(T[:3, 3]), "rpy": numbers(np.array([roll, pitch, yaw]))}
+    return {"xyz": numbers(T[:3, 3]), "rpy": numbers(Rotation.from_matrix(T[:3, :3]).as_euler("xyz"))}

@@ -20,33 +20,30 @@ from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, UsdSemantics
 from diorama_core.errors import ExportError
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.files import Entry, companion_folder, whole_file, write_package
-from diorama_core.export.gathering import ExportObject, ExportPlane, ExportScene, rigid_inverse
+from diorama_core.export.gathering import ExportObject, ExportPlane, ExportScene
 from diorama_core.export.pictures import encode_picture
 from diorama_core.export.usd_materials import (
     StageMaterials,
     add_camera,
-    add_even_light,
     add_light,
-    add_main_light,
+    add_lights,
     add_surfaces,
+    note,
+    place,
 )
-from diorama_core.export.usd_physics import add_physics, limb_path, object_path, plane_path
-from diorama_core.export.usd_values import note, place
+from diorama_core.export.usd_physics import ROOT, add_physics, limb_path, object_path, plane_path
 from diorama_core.progress import SILENT, Progress
 from diorama_core.scene.schema import scene_to_json
 
-ROOT = "/Scene"
 PROTOTYPES = "/Prototypes"
 
 
-def write_usda(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write USD text, with pictures in a folder beside it; raises `ExportError`."""
-    _write_layer(gathered, path, progress)
-
-
-def write_usdc(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
-    """Write binary USD, with pictures in a folder beside it; raises `ExportError`."""
-    _write_layer(gathered, path, progress)
+def write_layer(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
+    """Write USD, text or binary by its ending, with pictures in a folder beside it; raises `ExportError`."""
+    path = Path(path)
+    with _export_errors(path):
+        files = layer_files(gathered, path.name, f"{companion_folder(path, 'usd')}/textures", progress)
+        write_package(path, path.name, files)
 
 
 def write_usdz(gathered: ExportScene, path: Path, progress: Progress = SILENT) -> None:
@@ -62,14 +59,11 @@ def write_usdz(gathered: ExportScene, path: Path, progress: Progress = SILENT) -
                     file = Path(folder) / Path(name).name
                     file.write_bytes(content)
                     package.AddFile(str(file), name)
-            _check_whole(temporary, path)
-
-
-def _write_layer(gathered: ExportScene, path: Path, progress: Progress) -> None:
-    path = Path(path)
-    with _export_errors(path):
-        files = layer_files(gathered, path.name, f"{companion_folder(path, 'usd')}/textures", progress)
-        write_package(path, path.name, files)
+            # USD says nothing where a disk is full: the package's table of contents, which comes last, is missing.
+            if not zipfile.is_zipfile(temporary):
+                raise ExportError(
+                    f"cannot write {path}: the package is not whole; free some space or choose another disk"
+                )
 
 
 def layer_files(gathered: ExportScene, name: str, textures: str, progress: Progress) -> Iterator[Entry]:
@@ -87,16 +81,6 @@ def layer_files(gathered: ExportScene, name: str, textures: str, progress: Progr
         stage.GetRootLayer().Export(str(layer))
         yield from pictures
         yield name, layer.read_bytes()
-
-
-def _check_whole(package: Path, path: Path) -> None:
-    """USD says nothing where a disk is too full for a package: its table of contents, which comes last, is missing.
-
-    Raises:
-        ExportError: the file, which was to become `path`, is not whole.
-    """
-    if not zipfile.is_zipfile(package):
-        raise ExportError(f"cannot write {path}: the package is not whole; free some space or choose another disk")
 
 
 @contextmanager
@@ -136,15 +120,9 @@ def build_stage(
     _objects(stage, gathered)
     if gathered.camera is not None:
         add_camera(stage, f"{ROOT}/PhotoCamera", gathered.camera)
-    if gathered.main_light is not None:
-        add_main_light(stage, f"{ROOT}/MainLight", gathered.main_light, gathered.strength(gathered.main_light))
-    if gathered.even_light is not None:
-        for number, place in enumerate(gathered.even_light.positions, 1):
-            add_even_light(stage, f"{ROOT}/EvenLight{number}", place, gathered.even_light.candela)
+    add_lights(stage, ROOT, gathered)
     for light in gathered.lights:
-        owner = gathered.object(light.owner)
-        T = rigid_inverse(owner.T_world) @ light.T_world
-        add_light(stage, f"{object_path(owner)}/Light", light, T, gathered.strength(light))
+        add_light(stage, object_path(gathered.object(light.owner)), gathered, light)
     add_physics(stage, gathered, physical_scene(gathered))
     pictures: list[Entry] = []
     for name, picture in materials.pictures():

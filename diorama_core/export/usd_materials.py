@@ -1,4 +1,4 @@
-"""What is seen of a USD stage: meshes, UsdPreviewSurface materials, lights and the camera."""
+"""What is seen of a USD stage: meshes, UsdPreviewSurface materials, lights, the camera; values as USD's own types."""
 
 from __future__ import annotations
 
@@ -8,15 +8,14 @@ import numpy as np
 from jaxtyping import Float
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdShade, Vt
 
-from diorama_core.export.lights import ExportLight, MainLight
-from diorama_core.export.names import slug_of, unique_name
+from diorama_core.export.gathering import ExportScene, T_world_lens, rigid_inverse
+from diorama_core.export.lights import ExportLight
 from diorama_core.export.pictures import Picture, picture_suffix
-from diorama_core.export.usd_values import extent, integers, place, vectors
+from diorama_core.export.sharing import slug_of, unique_name
+from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.render.appearance import Material, Surface
 from diorama_core.scene.types import Camera
 
-_CAMERA_AXES = np.diag([1.0, -1.0, -1.0])
-"""USD's cameras look along their -z with y up; ours along +z with y down."""
 SOFT_DEG = 15.0
 """Angle that a room's main light fills: its shadows have soft edges."""
 EVEN_LIGHT_M = 0.03
@@ -100,9 +99,8 @@ class StageMaterials:
             glow = self._texture(f"{path}/Emissive", material.maps["emissiveTexture"], st, colour=True, factor=factor)
             surface.CreateInput("emissiveColor", _COLOUR).ConnectToSource(glow.CreateOutput("rgb", _VECTOR))
         if "normalTexture" in material.maps:
-            bumps = self._texture(
-                f"{path}/Normal", material.maps["normalTexture"], st, colour=False, factor=(2.0, 2.0, 2.0, 1.0)
-            )
+            picture, factor = material.maps["normalTexture"], (2.0, 2.0, 2.0, 1.0)
+            bumps = self._texture(f"{path}/Normal", picture, st, colour=False, factor=factor)
             bumps.CreateInput("bias", Sdf.ValueTypeNames.Float4).Set(Gf.Vec4f(-1.0, -1.0, -1.0, 0.0))
             normal = surface.CreateInput("normal", Sdf.ValueTypeNames.Normal3f)
             normal.ConnectToSource(bumps.CreateOutput("rgb", _VECTOR))
@@ -132,6 +130,37 @@ class StageMaterials:
             name = f"{self._folder}/{len(self._files)}{picture_suffix(picture)}"
             self._files[id(picture)] = (name, picture)  # holding the picture keeps its id from being reused
         return self._files[id(picture)][0]
+
+
+def vectors(values: Float[np.ndarray, "n 3"]) -> Vt.Vec3fArray:
+    """Rows as single-precision vectors."""
+    return Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(values, dtype=np.float32))
+
+
+def integers(values: np.ndarray) -> Vt.IntArray:
+    """Integers."""
+    return Vt.IntArray.FromNumpy(np.ascontiguousarray(values, dtype=np.int32))
+
+
+def extent(points: Float[np.ndarray, "n 3"]) -> Vt.Vec3fArray:
+    """Lower and upper corner of the box around points."""
+    return vectors(np.stack([points.min(axis=0), points.max(axis=0)]))
+
+
+def quaternion(R: Float[np.ndarray, "3 3"]) -> Gf.Quatd:
+    """A rotation matrix (acting on columns) as quaternion."""
+    return Gf.Quatd(*quaternion_wxyz(R).tolist())
+
+
+def note(prim: Usd.Prim, name: str, text: str) -> None:
+    """Say something of a prim for when the file is read back."""
+    prim.CreateAttribute(f"diorama:{name}", Sdf.ValueTypeNames.String, custom=True).Set(text)
+
+
+def place(xform: UsdGeom.Xformable, T: Float[np.ndarray, "4 4"]) -> None:
+    """Give a prim a rigid transform, as a translation and an orientation."""
+    xform.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*(float(v) for v in T[:3, 3])))
+    xform.AddOrientOp(UsdGeom.XformOp.PrecisionDouble).Set(quaternion(T[:3, :3]))
 
 
 def add_surfaces(stage: Usd.Stage, path: str, surfaces: tuple[Surface, ...], materials: StageMaterials) -> None:
@@ -182,9 +211,7 @@ def add_camera(stage: Usd.Stage, path: str, camera: Camera) -> None:
     """The photo's camera; the aperture's offset keeps a principal point off the centre."""
     k = camera.intrinsics
     made = UsdGeom.Camera.Define(stage, path)
-    T = camera.T_world_camera.copy()
-    T[:3, :3] = T[:3, :3] @ _CAMERA_AXES
-    place(made, T)
+    place(made, T_world_lens(camera))
     made.CreateFocalLengthAttr(k.fx / k.width * _APERTURE)
     made.CreateHorizontalApertureAttr(_APERTURE)
     made.CreateVerticalApertureAttr(_APERTURE * (k.height / k.fy) / (k.width / k.fx))
@@ -193,64 +220,51 @@ def add_camera(stage: Usd.Stage, path: str, camera: Camera) -> None:
     made.CreateClippingRangeAttr(Gf.Vec2f(0.01, 1000.0))
 
 
-def add_light(stage: Usd.Stage, path: str, light: ExportLight, T: Float[np.ndarray, "4 4"], strength: float) -> None:
-    """A sphere that glows, or a window's rectangle; `T` is its rigid transform below its object.
+def add_lights(stage: Usd.Stage, root: str, gathered: ExportScene) -> None:
+    """The photo's main light, infinitely far away and a little soft, and small spheres for the light from all sides."""
+    main, even = gathered.main_light, gathered.even_light
+    if main is not None:
+        made = UsdLux.DistantLight.Define(stage, f"{root}/MainLight")
+        made.CreateIntensityAttr(gathered.strength(main) * main.lux)
+        made.CreateAngleAttr(SOFT_DEG)
+        made.CreateNormalizeAttr(True)
+        made.CreateColorAttr(Gf.Vec3f(*main.colour))
+        place(made, main.T_world)
+    if even is None:
+        return
+    for number, position in enumerate(even.positions, 1):
+        nits = even.candela / (np.pi * EVEN_LIGHT_M**2)
+        sphere = _sphere(stage, f"{root}/EvenLight{number}", EVEN_LIGHT_M, nits)
+        sphere.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*(float(v) for v in position)))
+
+
+def add_light(stage: Usd.Stage, owner: str, gathered: ExportScene, light: ExportLight) -> None:
+    """A sphere that glows, or a window's rectangle, below its object.
 
     Args:
         stage: The document.
-        path: Of the prim.
+        owner: Path of the object.
+        gathered: The scene.
         light: Lamp or window.
-        T: Object from light.
-        strength: Factor of its lumens.
     """
+    lumens = gathered.strength(light) * light.lumens
     if light.kind == "lamp":
-        sphere = UsdLux.SphereLight.Define(stage, path)
-        sphere.CreateRadiusAttr(light.radius_m)
-        nits = strength * light.lumens / (4.0 * np.pi**2 * light.radius_m**2)
-        made: UsdGeom.Xformable = sphere
-        sphere.CreateIntensityAttr(nits)
-        sphere.CreateColorAttr(Gf.Vec3f(*light.colour))
-        sphere.CreateExtentAttr(extent(np.array([[-1.0] * 3, [1.0] * 3]) * light.radius_m))
+        nits = lumens / (4.0 * np.pi**2 * light.radius_m**2)
+        made: UsdLux.SphereLight | UsdLux.RectLight = _sphere(stage, f"{owner}/Light", light.radius_m, nits)
     else:
         width, height = light.size_m
-        rect = UsdLux.RectLight.Define(stage, path)
-        rect.CreateWidthAttr(width)
-        rect.CreateHeightAttr(height)
-        rect.CreateIntensityAttr(strength * light.lumens / (np.pi * width * height))
-        rect.CreateColorAttr(Gf.Vec3f(*light.colour))
-        rect.CreateExtentAttr(extent(np.array([[-width, -height, 0.0], [width, height, 0.0]]) / 2))
-        made = rect
-    place(made, T)
-
-
-def add_even_light(stage: Usd.Stage, path: str, position: Float[np.ndarray, "3"], candela: float) -> None:
-    """A small sphere, one of those that stand for the light from all sides.
-
-    Args:
-        stage: that gets the light.
-        path: of the new prim.
-        position: in the world, metres.
-        candela: to all sides.
-    """
-    made = UsdLux.SphereLight.Define(stage, path)
-    made.CreateRadiusAttr(EVEN_LIGHT_M)
-    made.CreateIntensityAttr(candela / (np.pi * EVEN_LIGHT_M**2))
-    made.CreateExtentAttr(extent(np.array([[-1.0] * 3, [1.0] * 3]) * EVEN_LIGHT_M))
-    made.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*(float(v) for v in position)))
-
-
-def add_main_light(stage: Usd.Stage, path: str, light: MainLight, strength: float) -> None:
-    """The photo's main light, infinitely far away and a little soft; `strength` is a factor of its lux.
-
-    Args:
-        stage: that gets the light.
-        path: of the new prim.
-        light: direction, colour and lux.
-        strength: factor of its lux.
-    """
-    made = UsdLux.DistantLight.Define(stage, path)
-    made.CreateIntensityAttr(strength * light.lux)
-    made.CreateAngleAttr(SOFT_DEG)
-    made.CreateNormalizeAttr(True)
+        made = UsdLux.RectLight.Define(stage, f"{owner}/Light")
+        made.CreateWidthAttr(width)
+        made.CreateHeightAttr(height)
+        made.CreateIntensityAttr(lumens / (np.pi * width * height))
+        made.CreateExtentAttr(extent(np.array([[-width, -height, 0.0], [width, height, 0.0]]) / 2))
     made.CreateColorAttr(Gf.Vec3f(*light.colour))
-    place(made, light.T_world)
+    place(made, rigid_inverse(gathered.object(light.owner).T_world) @ light.T_world)
+
+
+def _sphere(stage: Usd.Stage, path: str, radius_m: float, nits: float) -> UsdLux.SphereLight:
+    made = UsdLux.SphereLight.Define(stage, path)
+    made.CreateRadiusAttr(radius_m)
+    made.CreateIntensityAttr(nits)
+    made.CreateExtentAttr(extent(np.array([[-1.0] * 3, [1.0] * 3]) * radius_m))
+    return made

@@ -10,7 +10,7 @@ from diorama_core.export.bodies import MovingPart, PhysicalScene, Points, RigidB
 from diorama_core.export.gathering import ExportObject, ExportPlane, ExportScene, rigid_inverse
 from diorama_core.export.limbs import ExportLimb
 from diorama_core.export.physics import FLOOR_FRICTION, GRAVITY, Inertia
-from diorama_core.export.usd_values import extent, integers, quaternion, vectors
+from diorama_core.export.usd_materials import extent, integers, quaternion, vectors
 
 ROOT = "/Scene"
 _FIXED, _VARYING = Sdf.VariabilityUniform, Sdf.VariabilityVarying
@@ -42,7 +42,12 @@ def add_physics(stage: Usd.Stage, gathered: ExportScene, physical: PhysicalScene
             if body.moving or body is not base:
                 UsdPhysics.ArticulationRootAPI.Apply(stage.GetPrimAtPath(paths[base.node.id]))
         if base.free and not body.free and body.carrier is not None:
-            _weld(stage, paths[body.carrier], path, gathered, body)
+            _weld(
+                stage,
+                paths[body.carrier],
+                path,
+                rigid_inverse(gathered.object(body.carrier).T_world) @ body.node.T_world,
+            )
         for moving in body.moving:
             joint = _limb(stage, path, moving)
             if not base.free:  # each joint that is bolted to what cannot move is the root of an articulation
@@ -99,13 +104,7 @@ class _Colliders:
         self._apart: dict[str, list[str]] = {}
 
     def add(self, path: str, parts: tuple[Points, ...], grip: UsdShade.Material) -> None:
-        """Those of one prim.
-
-        Args:
-            path: of the prim.
-            parts: vertices (n, 3) of its convex parts, in the prim's frame (m).
-            grip: the friction of their surface.
-        """
+        """Those of one prim: corners of convex parts in its frame, and the friction of their surface."""
         self._of[path] = parts, grip.GetPath()
 
     def let_overlap(self, path: str, other: str) -> None:
@@ -127,18 +126,11 @@ class _Colliders:
 
 
 def _collider(scope: Sdf.PrimSpec, name: str, points: Points, grip: Sdf.Path, apart: list[Sdf.Path]) -> None:
-    """One convex mesh with its collision.
-
-    Args:
-        scope: of the colliders of its body.
-        name: of its prim.
-        points: its corners, in the body's frame (m).
-        grip: the material it grips with.
-        apart: colliders that it may overlap.
-    """
+    """One convex mesh with its collision, which may overlap the colliders `apart`."""
     vertices, faces = hull_faces(points)
     prim = Sdf.PrimSpec(scope, name, Sdf.SpecifierDef, "Mesh")
-    prim.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=_COLLIDER_SCHEMAS))
+    schemas = [*_COLLIDER_SCHEMAS, *(["PhysicsFilteredPairsAPI"] if apart else [])]
+    prim.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=schemas))
     types = Sdf.ValueTypeNames
     for attribute, kind, variability, value in (
         ("subdivisionScheme", types.Token, _FIXED, UsdGeom.Tokens.none),
@@ -152,9 +144,6 @@ def _collider(scope: Sdf.PrimSpec, name: str, points: Points, grip: Sdf.Path, ap
     binding = Sdf.RelationshipSpec(prim, "material:binding:physics", custom=False)
     binding.targetPathList.explicitItems = [grip]
     if apart:
-        prim.SetInfo(
-            "apiSchemas", Sdf.TokenListOp.Create(prependedItems=[*_COLLIDER_SCHEMAS, "PhysicsFilteredPairsAPI"])
-        )
         pairs = Sdf.RelationshipSpec(prim, "physics:filteredPairs", custom=False)
         pairs.targetPathList.explicitItems = apart
 
@@ -208,12 +197,9 @@ def _frame_along(axis: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
     return np.stack([axis, second, np.cross(axis, second)], axis=1)
 
 
-def _weld(stage: Usd.Stage, carrier: str, path: str, gathered: ExportScene, body: RigidBody) -> None:
-    if body.carrier is None:
-        return
-    T = rigid_inverse(gathered.object(body.carrier).T_world) @ body.node.T_world
+def _weld(stage: Usd.Stage, carrier: str, path: str, T: Float[np.ndarray, "4 4"]) -> None:
     joint = UsdPhysics.FixedJoint.Define(stage, f"{path}/Weld")
     joint.CreateBody0Rel().AddTarget(Sdf.Path(carrier))
     joint.CreateBody1Rel().AddTarget(Sdf.Path(path))
-    joint.CreateLocalPos0Attr(Gf.Vec3f(*(float(v) for v in T[:3, 3])))
+    joint.CreateLocalPos0Attr(Gf.Vec3f(*T[:3, 3].tolist()))
     joint.CreateLocalRot0Attr(Gf.Quatf(quaternion(T[:3, :3])))

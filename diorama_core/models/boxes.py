@@ -32,6 +32,11 @@ def clip(boxes: Float[np.ndarray, "n 4"], width: int, height: int) -> Float[np.n
     return np.clip(boxes, 0, [width, height, width, height])
 
 
+def corners(boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n 4"]:
+    """Corner boxes from middles and sizes."""
+    return np.concatenate([boxes[:, :2] - boxes[:, 2:] / 2, boxes[:, :2] + boxes[:, 2:] / 2], axis=1)
+
+
 def areas(boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n"]:
     """In square pixels."""
     return np.maximum(boxes[:, 2] - boxes[:, 0], 0) * np.maximum(boxes[:, 3] - boxes[:, 1], 0)
@@ -80,11 +85,9 @@ def without_doubles(detections: Detections, iou: float, *, across_classes: bool)
 
 def join(parts: Sequence[Detections]) -> Detections:
     """All boxes of all parts, one part after another."""
-    return Detections(
-        np.concatenate([p.boxes for p in parts]),
-        np.concatenate([p.scores for p in parts]),
-        np.concatenate([p.labels for p in parts]),
-    )
+    every = [Detections(np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int)), *parts]
+    columns = ([p.boxes for p in every], [p.scores for p in every], [p.labels for p in every])
+    return Detections(*map(np.concatenate, columns))
 
 
 def without_parts_of_same(detections: Detections, share: float) -> Detections:

@@ -6,8 +6,7 @@ toward the camera.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -17,7 +16,7 @@ from scipy.optimize import minimize_scalar
 from diorama_core.errors import UnavailableError
 from diorama_core.geometry.depth_grid import smooth_normals_camera
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalise, resize
-from diorama_core.models.runtime import SHARED_SESSIONS, SINGLE, Dims, NetworkError, SessionPool
+from diorama_core.models.runtime import SINGLE, Dims, GraphNetwork, NetworkError
 from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.scene.types import Intrinsics
 
@@ -32,14 +31,12 @@ MAX_PIXELS = 700 * 700
 
 
 @dataclass(frozen=True)
-class Moge2:
+class Moge2(GraphNetwork):
     """MoGe-2 (Wang et al. 2025): affine points, normals, validity and metric scale; finds the focal length itself."""
 
-    graph: Path = field(repr=False)
     weights: str = "moge-2"
     tokens: int = 1800
     """Detail, 1200 to 2500."""
-    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def predict(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
         """Depth, normals and intrinsics; given intrinsics are kept and only the shift is recovered.
@@ -51,7 +48,7 @@ class Moge2:
         factor = min(1.0, (MAX_PIXELS / (height * width)) ** 0.5)
         small = (max(16, round(height * factor)), max(16, round(width * factor)))
         picture = resize(rgb, small).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255.0)
-        session = self.pool.get(self.graph)
+        session = self.session
         scale = next((n for n in session.outputs if n == "metric_scale"), "scale")
         out = session.run(
             {"image": picture, "num_tokens": np.array(self.tokens, np.int64)},
@@ -137,17 +134,15 @@ def focal_and_shift(
 
 
 @dataclass(frozen=True)
-class Metric3d:
+class Metric3d(GraphNetwork):
     """Metric3D v2 (Hu et al. 2024): depth for a canonical camera and normals; needs a focal length."""
 
-    graph: Path = field(repr=False)
     weights: str = "metric3d-v2"
     size: tuple[int, int] = (616, 1064)
     """Height and width that the network was trained with."""
     canonical_focal_px: float = 1000.0
     usual_fov_rad: float = 1.05
     """Horizontal, of pictures whose camera is unknown."""
-    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def predict(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
         """Depth and normals; without intrinsics a usual field of view is assumed.
@@ -158,7 +153,7 @@ class Metric3d:
         height, width = rgb.shape[:2]
         k = intrinsics or Intrinsics.from_fov(width, height, self.usual_fov_rad)
         pixels, (top, left, inner_h, inner_w) = self.pixels(rgb)
-        session = self.pool.get(self.graph)
+        session = self.session
         out = session.run({session.picture_input: pixels}, {"predicted_depth": (..., *self.size)}, gaps=True)
         normals = out.get("predicted_normal")
         last = normals is not None and normals.shape[-1:] in ((3,), (4,))
@@ -235,14 +230,12 @@ SKY = 0.5
 
 
 @dataclass(frozen=True)
-class DepthAnything3:
+class DepthAnything3(GraphNetwork):
     """Canonical depth and sky of a picture that is stretched to a square; normals follow from the depth."""
 
-    graph: Path = field(repr=False)
     weights: str = "da3-metric"
     usual_fov_rad: float = 1.05
     """Horizontal, of pictures whose camera is unknown."""
-    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def predict(self, rgb: UInt8[np.ndarray, "h w 3"], intrinsics: Intrinsics | None) -> SeenDepth:
         """Depth and normals; without intrinsics a usual field of view is assumed.
@@ -252,7 +245,7 @@ class DepthAnything3:
         """
         height, width = rgb.shape[:2]
         k = intrinsics or Intrinsics.from_fov(width, height, self.usual_fov_rad)
-        session = self.pool.get(self.graph)
+        session = self.session
         side = session.side_px("image", SIDE)
         out = session.run({"image": self.pixels(rgb, side)}, {"depth": (1, 1, side, side), "sky": (1, 1, side, side)})
         square = k.resize(side, side)

@@ -6,7 +6,6 @@ Tan and Le, EfficientNet (ICML 2019), in the variant for small devices: no squee
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from functools import cache
 from importlib.util import find_spec
@@ -16,7 +15,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.errors import UnavailableError
-from diorama_core.models.store import derive_graph
+from diorama_core.models.store import derive_graph, sha256_of
 
 FEATURES, CLASSES = 1280, 1000
 SIDE_PX = 224
@@ -56,9 +55,8 @@ def _weights() -> Path:
     path = Path(spec.origin).parent / _WEIGHTS
     if not path.is_file():
         raise UnavailableError(f"{path}: is missing; {again}")
-    with path.open("rb") as file:
-        if hashlib.file_digest(file, "sha256").hexdigest() != _WEIGHTS_SHA256:
-            raise UnavailableError(f"{path}: is not the published file; {again}")
+    if sha256_of(path) != _WEIGHTS_SHA256:
+        raise UnavailableError(f"{path}: is not the published file; {again}")
     return path
 
 
@@ -87,14 +85,7 @@ class _GraphWriter:
         return name
 
     def add(self, operator: str, inputs: list[str], name: str, **attributes: object) -> str:
-        """Add a node to the graph and return the name of its output.
-
-        Args:
-            operator: of ONNX.
-            inputs: names of its inputs.
-            name: of its output.
-            attributes: of the operator.
-        """
+        """Add a node with an operator of ONNX to the graph and return the name of its output."""
         self.nodes.append(self._helper.make_node(operator, inputs, [name], **attributes))
         return name
 
@@ -112,21 +103,11 @@ class _GraphWriter:
         deviation = np.sqrt(self._weights[f"{norm}.running_var"].astype(np.float64) + _EPSILON)
         gain = self._weights[f"{norm}.weight"] / deviation
         bias = self._weights[f"{norm}.bias"] - self._weights[f"{norm}.running_mean"] * gain
-        names = [
-            x,
-            self.constant(f"{convolution}.w", kernel * gain[:, None, None, None]),
-            self.constant(f"{convolution}.b", bias),
-        ]
-        depthwise = kernel.shape[1] == 1
-        y = self.add(
-            "Conv",
-            names,
-            f"{convolution}.y",
-            auto_pad="SAME_UPPER",
-            strides=[stride, stride],
-            group=len(kernel) if depthwise else 1,
-            kernel_shape=list(kernel.shape[2:]),
-        )
+        w = self.constant(f"{convolution}.w", kernel * gain[:, None, None, None])
+        groups = len(kernel) if kernel.shape[1] == 1 else 1  # each channel by itself, or all together
+        shape = {"strides": [stride, stride], "group": groups, "kernel_shape": list(kernel.shape[2:])}
+        names = [x, w, self.constant(f"{convolution}.b", bias)]
+        y = self.add("Conv", names, f"{convolution}.y", auto_pad="SAME_UPPER", **shape)
         return y if linear else self.add("Clip", [y, "zero", "six"], f"{convolution}.a")
 
     def block(self, x: str, k: int) -> str:

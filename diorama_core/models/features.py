@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,23 +13,21 @@ from diorama_core.errors import UnavailableError
 from diorama_core.io.atomic import open_atomically
 from diorama_core.io.bounded import shorten
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalise, resize
-from diorama_core.models.runtime import SHARED_SESSIONS, NetworkError, SessionPool
+from diorama_core.models.runtime import GraphNetwork, NetworkError
 
 PATCH = 14
 
 
 @dataclass(frozen=True)
-class Dinov2:
+class Dinov2(GraphNetwork):
     """Input: an RGB picture, eight bits. Output: one vector per patch of 14 x 14 pixels.
 
     GigaPose reads block 17 of the large network (blocks count from 0), after the final LayerNorm.
     """
 
-    graph: Path = field(repr=False)
     weights: str = "dinov2"
     block: int | None = None
     """Inner block to read; None reads the last."""
-    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def patches(self, rgb: UInt8[np.ndarray, "h w 3"], side: int = 224) -> Float32[np.ndarray, "n n d"]:
         """Features of the picture stretched to a square of `side` pixels, a multiple of 14."""

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, enlarge, normalise, resize
-from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.runtime import GraphNetwork
 
 SIDE = 1024
 WHITE = 255
@@ -26,19 +25,17 @@ class ForegroundNetwork(Protocol):
 
 
 @dataclass(frozen=True)
-class Foreground:
+class Foreground(GraphNetwork):
     """Input: an upright RGB picture, eight bits. Output: probability of foreground in its pixels.
 
     BiRefNet and MVANet share the signature: one picture of 1024 x 1024 in, one map of logits out.
     """
 
-    graph: Path = field(repr=False)
     weights: str = "birefnet"
-    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def probability(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "h w"]:
         """0 to 1."""
-        session = self.pool.get(self.graph)
+        session = self.session
         last = session.outputs[-1]
         out = session.run({session.picture_input: self.pixels(rgb)}, {last: (..., SIDE, SIDE)}, gaps=True)
         logits = out[last].reshape(SIDE, SIDE).astype(np.float32)

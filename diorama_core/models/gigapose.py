@@ -67,9 +67,8 @@ class GigaPoseScale:
     def maps(self, crops: Sequence[UInt8[np.ndarray, "_ _ 3"]]) -> Float32[np.ndarray, "b c n n"]:
         """Feature maps of crops, each stretched to 224 x 224; normalised as in its training (CLIP's statistics)."""
         session = self.pool.get(self.features)
-        name, first = session.picture_input, session.outputs[0]
         pixels = [normalise(resize(c, (SIDE, SIDE)), CLIP_MEAN, CLIP_STD) for c in crops]
-        return np.concatenate([session.run({name: p}, {first: (1, None, None, None)})[first] for p in pixels])
+        return np.concatenate([session.answer({session.picture_input: p}, (1, None, None, None)) for p in pixels])
 
     def turns(
         self,

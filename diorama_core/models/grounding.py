@@ -12,10 +12,10 @@ import numpy as np
 from jaxtyping import Float32, Int64, UInt8
 from scipy.special import expit
 
-from diorama_core.models.boxes import Detections, clip, join
+from diorama_core.models.boxes import Detections, clip, corners, join
+from diorama_core.models.clip import load_tokenizer
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalise, resize
 from diorama_core.models.runtime import SHARED_SESSIONS, NetworkError, SessionPool
-from diorama_core.models.tokens import load_tokenizer
 from diorama_core.progress import Progress
 
 TOKENS = 256
@@ -89,8 +89,6 @@ class GroundingDino:
             detections.append(
                 _likely_detections(out["logits"][0], out["pred_boxes"][0], prompt, threshold, rgb.shape[:2])
             )
-        if not detections:
-            return Detections(np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int))
         every = join(detections)
         return every.rows(np.argsort(-every.scores, kind="stable"))
 
@@ -146,6 +144,5 @@ def _likely_detections(
     best = shares.argmax(axis=1)
     scores = shares[np.arange(len(shares)), best]
     keep = np.flatnonzero(scores > threshold)
-    centre, half = boxes[keep, :2].astype(np.float64), boxes[keep, 2:].astype(np.float64) / 2
-    corners = np.concatenate([centre - half, centre + half], axis=1) * np.array([width, height] * 2)
-    return Detections(clip(corners, width, height), scores[keep], np.array(prompt.phrases, dtype=int)[best[keep]])
+    in_pixels = corners(boxes[keep].astype(np.float64)) * np.array([width, height] * 2)
+    return Detections(clip(in_pixels, width, height), scores[keep], np.array(prompt.phrases, dtype=int)[best[keep]])

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import cv2
@@ -11,7 +10,7 @@ import numpy as np
 from jaxtyping import Bool, UInt8
 
 from diorama_core.models.images import resize
-from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.runtime import GraphNetwork
 
 LAMA_SIDE = 512
 _FEATHER_PX = 3
@@ -30,12 +29,10 @@ class Filler(Protocol):
 
 
 @dataclass(frozen=True)
-class Lama:
+class Lama(GraphNetwork):
     """LaMa at its 512 x 512: the picture is stretched there and only the holes are taken back."""
 
-    graph: Path = field(repr=False)
     weights: str = "lama"
-    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def fill(self, rgb: UInt8[np.ndarray, "h w 3"], hole: Bool[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 3"]:
         """The picture with its holes filled."""
@@ -44,30 +41,26 @@ class Lama:
         size = (LAMA_SIDE, LAMA_SIDE)
         image = resize(rgb, size).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255.0)
         small = cv2.resize(hole.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
-        session = self.pool.get(self.graph)
-        first = session.outputs[0]
-        out = session.run({"image": image, "mask": small[None, None].astype(np.float32)}, {first: (1, 3, *size)})
-        filled = np.clip(out[first][0].transpose(1, 2, 0), 0, 255).round().astype(np.uint8)
+        feeds = {"image": image, "mask": small[None, None].astype(np.float32)}
+        out = self.session.answer(feeds, (1, 3, *size))[0].transpose(1, 2, 0)
+        filled = np.clip(out, 0, 255).round().astype(np.uint8)
         return merge(rgb, resize(filled, rgb.shape[:2]), hole)
 
 
 @dataclass(frozen=True)
-class Migan:
+class Migan(GraphNetwork):
     """MI-GAN's whole pipeline: crops, fills and blends by itself, at any size."""
 
-    graph: Path = field(repr=False)
     weights: str = "mi-gan"
-    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def fill(self, rgb: UInt8[np.ndarray, "h w 3"], hole: Bool[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 3"]:
         """The picture with its holes filled."""
         if not hole.any():
             return rgb
         keep = np.where(hole, 0, 255).astype(np.uint8)
-        session = self.pool.get(self.graph)
-        first, image = session.outputs[0], np.ascontiguousarray(rgb.transpose(2, 0, 1)[None])
-        out = session.run({"image": image, "mask": keep[None, None]}, {first: (1, 3, *hole.shape)})
-        return merge(rgb, out[first][0].transpose(1, 2, 0).astype(np.uint8), hole)
+        feeds = {"image": np.ascontiguousarray(rgb.transpose(2, 0, 1)[None]), "mask": keep[None, None]}
+        out = self.session.answer(feeds, (1, 3, *hole.shape))
+        return merge(rgb, out[0].transpose(1, 2, 0).astype(np.uint8), hole)
 
 
 def merge(

@@ -22,7 +22,7 @@ from diorama_core.errors import UnavailableError
 from diorama_core.io import assets
 from diorama_core.io.derived import read_arrays
 from diorama_core.models.efficientnet import CLASSES, FEATURES, SIDE_PX, lite0_graph
-from diorama_core.models.images import box_crop
+from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, box_crop, normalise
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.scene.values import ArrayValue
 
@@ -30,8 +30,6 @@ log = logging.getLogger(__name__)
 
 MARGIN, SQUEEZE = 0.06, 0.5
 """Around the box, and how far a long box is stretched to fill the square: a compromise between detail and shape."""
-_MEAN, _DEVIATION = np.array([0.485, 0.456, 0.406], np.float32), np.array([0.229, 0.224, 0.225], np.float32)
-"""Mean and deviation of ImageNet's pixels, 0 to 1."""
 _ELSEWHERE = 0.1
 """Share of a kind's pictures whose class the table does not foresee, spread over all classes."""
 TABLE_TRUST = 0.875
@@ -111,11 +109,7 @@ def unit_features(features: Float[np.ndarray, "n f"]) -> Float[np.ndarray, "n f"
 
 @cache
 def own_evidence(kinds: tuple[str, ...]) -> KindEvidence | None:
-    """The evidence for kinds in this order; None, with one line in the log, where a part of it is missing.
-
-    Args:
-        kinds: columns of the likelihoods.
-    """
+    """The evidence for kinds in this order; None, with one line in the log, where a part of it is missing."""
     try:
         readings = _readings(kinds)
         identity = hashlib.sha256(b"".join(a.tobytes() for a in (readings.classes, readings.basis, readings.weights)))
@@ -151,15 +145,12 @@ def read_class_table(path: Path, kinds: tuple[str, ...]) -> Float[np.ndarray, "k
         parsed = [_ENTRY.fullmatch(entry) for entry in entries.split(", ")]
         if kind not in row or not all(parsed):
             raise UnavailableError(f"{path}, line {number}: not 'kind: NUMBER class SHARE, ...'")
-        for entry in parsed:
-            if entry is not None:
-                table[row[kind], int(entry[1])] = float(entry[3])
-    unlisted = ~table.any(axis=1)
-    table[unlisted] = 1.0
+        for entry in filter(None, parsed):
+            table[row[kind], int(entry[1])] = float(entry[3])
+    table[~table.any(axis=1)] = 1.0
     return table / table.sum(axis=1, keepdims=True)
 
 
 def _crops(rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Float32[np.ndarray, "n 3 s s"]:
-    crops = np.stack([box_crop(rgb, box, MARGIN, SIDE_PX, SQUEEZE) for box in boxes])
-    normal = (crops.astype(np.float32) / np.float32(255) - _MEAN) / _DEVIATION
-    return np.ascontiguousarray(normal.transpose(0, 3, 1, 2))
+    crops = (box_crop(rgb, box, MARGIN, SIDE_PX, SQUEEZE) for box in boxes)
+    return np.concatenate([normalise(crop, IMAGENET_MEAN, IMAGENET_STD) for crop in crops])

@@ -6,28 +6,24 @@ another. Patches are made here, so that the graph holds nothing but the network 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float, Float32, Int
 
 from diorama_core.models.clip import unit
-from diorama_core.models.runtime import SHARED_SESSIONS, Dims, SessionPool
+from diorama_core.models.runtime import GraphNetwork
 
 POINTS = 10_000
 """As many points of a shape as the network was trained with."""
 PATCHES, NEIGHBOURS, RADIUS = 384, 64, 0.2
-_VECTOR: Dims = (1, None)
 
 
 @dataclass(frozen=True)
-class OpenShape:
+class OpenShape(GraphNetwork):
     """Input: points of a surface, +Z up, with colours. Output: one unit vector in OpenCLIP bigG-14's space."""
 
-    graph: Path = field(repr=False)
     weights: str = "openshape"
-    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def shape(self, points: Float[np.ndarray, "n 3"], colours: Float[np.ndarray, "n 3"]) -> Float32[np.ndarray, " d"]:
         """The shape that the points lie on.
@@ -36,11 +32,8 @@ class OpenShape:
             points: On its surface, in any unit; `POINTS` are best.
             colours: sRGB, 0 to 1.
         """
-        session = self.pool.get(self.graph)
         centres, patches = patches_of(points, colours)
-        first = session.outputs[0]
-        feeds = {"centres": centres[None], "patches": patches[None]}
-        return unit(session.run(feeds, {first: _VECTOR})[first])[0]
+        return unit(self.session.answer({"centres": centres[None], "patches": patches[None]}, (1, None)))[0]
 
 
 def patches_of(

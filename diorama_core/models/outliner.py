@@ -7,7 +7,7 @@ made and how good they are.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from scipy.special import expit
 from diorama_core.errors import UnavailableError
 from diorama_core.io import assets
 from diorama_core.io.assets import OUTLINER
-from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.runtime import GraphNetwork
 from diorama_core.models.store import sha256_of
 
 Box = tuple[float, float, float, float]
@@ -38,17 +38,10 @@ _BLUR = 0.45
 
 
 @dataclass(frozen=True)
-class BoxOutliner:
-    """Input: an upright RGB picture, eight bits, any size, and boxes in its pixels. Output: shares of their windows.
+class BoxOutliner(GraphNetwork):
+    """Input: an upright RGB picture, eight bits, any size, and boxes in its pixels. Output: shares of their windows."""
 
-    Args:
-        graph: from windows to logits.
-        weights: identity of the graph, for cache keys.
-    """
-
-    graph: Path = field(repr=False)
     weights: str = "outliner"
-    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     @classmethod
     def of(cls, folder: Path) -> BoxOutliner:
@@ -77,11 +70,8 @@ class BoxOutliner:
         return shares
 
     def _logits(self, windows: Float32[np.ndarray, "b 4 s s"]) -> Float32[np.ndarray, "b s s"]:
-        session = self.pool.get(self.graph)
-        out: Float32[np.ndarray, "b s s"] = session.run({"windows": windows}, {"logits": (len(windows), SIDE, SIDE)})[
-            "logits"
-        ].astype(np.float32)
-        return out
+        shapes = {"logits": (len(windows), SIDE, SIDE)}
+        return self.session.run({"windows": windows}, shapes)["logits"].astype(np.float32)
 
 
 @cache

@@ -11,10 +11,10 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Float32, Int64, UInt8
 
-from diorama_core.models.boxes import Detections, clip
+from diorama_core.models.boxes import Detections, clip, corners, join
+from diorama_core.models.clip import clip_tokens, load_tokenizer
 from diorama_core.models.images import CLIP_MEAN, CLIP_STD, antialias, normalise, pad_square
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
-from diorama_core.models.tokens import clip_tokens, load_tokenizer
 from diorama_core.progress import Progress
 
 TOKENS = 16
@@ -93,14 +93,13 @@ class Owlv2:
             logits.append(out["logits"][0])
             boxes = out["pred_boxes"][0].astype(np.float64)
         if not logits:
-            return Detections(np.zeros((0, 4)), np.zeros(0), np.zeros(0, dtype=int))
+            return join([])
         joined = np.concatenate(logits, axis=1)
         labels = joined.argmax(axis=1)
         scores = 1.0 / (1.0 + np.exp(np.minimum(-joined[np.arange(len(joined)), labels].astype(np.float64), 700.0)))
         keep = np.flatnonzero(scores > threshold)
         keep = keep[np.argsort(-scores[keep], kind="stable")]
-        corners = np.concatenate([boxes[:, :2] - boxes[:, 2:] / 2, boxes[:, :2] + boxes[:, 2:] / 2], axis=1)
-        in_pixels = corners[keep] * max(height, width)  # boxes are relative to the padded square
+        in_pixels = corners(boxes)[keep] * max(height, width)  # boxes are relative to the padded square
         return Detections(clip(in_pixels, width, height), scores[keep], labels[keep])
 
     def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "1 3 side side"]:

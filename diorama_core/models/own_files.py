@@ -17,9 +17,9 @@ from scipy.special import softmax
 from diorama_core.errors import InputError
 from diorama_core.geometry.depth_grid import smooth_normals_camera
 from diorama_core.io.bounded import read_bytes
-from diorama_core.models.boxes import Detections, clip, without_doubles
+from diorama_core.models.boxes import Detections, clip, corners, without_doubles
 from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalise, resize
-from diorama_core.models.runtime import SHARED_SESSIONS, Dims, NetworkError, SessionPool
+from diorama_core.models.runtime import SHARED_SESSIONS, Dims, GraphNetwork, NetworkError, Session, SessionPool
 from diorama_core.models.seen_depth import SeenDepth
 from diorama_core.models.store import sha256_of
 from diorama_core.models.yolox import COCO_CLASSES, decode, letterbox
@@ -69,37 +69,33 @@ class FileDetector:
             NetworkError: when the outputs are those of no detector that is known, or of another number of labels.
         """
         session = self.pool.get(self.graph)
-        name = session.picture_input
-        if len(session.outputs) >= 2:
-            boxes, scores = self._detr(rgb, name, session.side_px(name, SIDE_PX))
-        else:
-            boxes, scores = self._yolo(rgb, name, session.side_px(name, SIDE_PX))
+        read = self._detr if len(session.outputs) >= 2 else self._yolo
+        boxes, scores = read(rgb, session, session.picture_input)
         best, labels = scores.max(axis=1), scores.argmax(axis=1)
         keep = np.flatnonzero(best >= threshold)
         detections = Detections(clip(boxes[keep], rgb.shape[1], rgb.shape[0]), best[keep], labels[keep])
         return without_doubles(detections, iou, across_classes=True)
 
     def _yolo(
-        self, rgb: UInt8[np.ndarray, "h w 3"], name: str, side: int
+        self, rgb: UInt8[np.ndarray, "h w 3"], session: Session, name: str
     ) -> tuple[Float[np.ndarray, "n 4"], Float[np.ndarray, "n c"]]:
-        session, count = self.pool.get(self.graph), len(self.labels)
+        side, count = session.side_px(name, SIDE_PX), len(self.labels)
         bgr, scale = letterbox(rgb, side)
         unit = np.ascontiguousarray(bgr[:, ::-1]) / np.float32(255)
-        raw = session.run({name: unit}, {session.outputs[0]: _ANY})[session.outputs[0]]
-        raw = _rows(raw)
+        raw = _rows(session.answer({name: unit}, _ANY))
         if raw.shape == (sum((side // s) ** 2 for s in _STRIDES), 5 + count):  # YOLOX: offsets to cells, other pixels
-            raw = session.run({name: bgr}, {session.outputs[0]: (1, *raw.shape)})[session.outputs[0]][0]
+            raw = session.answer({name: bgr}, (1, *raw.shape))[0]
             return decode(raw, side) / scale, (raw[:, 4:5] * raw[:, 5:]).astype(np.float64)
         if raw.shape[0] == 4 + count:
-            return _corners(raw[:4].T) / scale, raw[4:].T
+            return corners(raw[:4].T) / scale, raw[4:].T
         if raw.shape[1] == 5 + count:
-            return _corners(raw[:, :4]) / scale, raw[:, 4:5] * raw[:, 5:]
+            return corners(raw[:, :4]) / scale, raw[:, 4:5] * raw[:, 5:]
         raise self._unknown([raw.shape])
 
     def _detr(
-        self, rgb: UInt8[np.ndarray, "h w 3"], name: str, side: int
+        self, rgb: UInt8[np.ndarray, "h w 3"], session: Session, name: str
     ) -> tuple[Float[np.ndarray, "n 4"], Float[np.ndarray, "n c"]]:
-        session, count = self.pool.get(self.graph), len(self.labels)
+        side, count = session.side_px(name, SIDE_PX), len(self.labels)
         pixels = normalise(resize(rgb, (side, side)), IMAGENET_MEAN, IMAGENET_STD)
         feeds: dict[str, np.ndarray] = {name: pixels}
         for other in session.inputs:
@@ -113,7 +109,7 @@ class FileDetector:
             raise self._unknown([r.shape for r in rows])
         # With a class for nothing the classes exclude each other; without one each is asked by itself.
         scores = softmax(logits, axis=1)[:, :count] if logits.shape[1] > count else 1 / (1 + np.exp(-logits))
-        return _corners(boxes) * np.array([rgb.shape[1], rgb.shape[0]] * 2), scores
+        return corners(boxes) * np.array([rgb.shape[1], rgb.shape[0]] * 2), scores
 
     def _unknown(self, shapes: list[tuple[int, ...]]) -> NetworkError:
         sizes = " and ".join(" x ".join(map(str, shape)) for shape in shapes)
@@ -125,15 +121,11 @@ class FileDetector:
 
 
 @dataclass(frozen=True)
-class FileDepth:
+class FileDepth(GraphNetwork):
     """A network from a picture between 0 and 1 (stretched to its own size) to depth in metres."""
 
-    graph: Path = field(repr=False)
-    weights: str
-    """Identity of the file, for cache keys."""
     usual_fov_rad: float = 1.05
     """Horizontal, of pictures whose camera is unknown."""
-    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     @classmethod
     def of(cls, graph: Path) -> FileDepth:
@@ -153,13 +145,10 @@ class FileDepth:
         """
         height, width = rgb.shape[:2]
         k = intrinsics or Intrinsics.from_fov(width, height, self.usual_fov_rad)
-        session = self.pool.get(self.graph)
-        name = session.picture_input
+        session, name = self.session, self.session.picture_input
         side = session.side_px(name, SIDE_PX)
         pixels = resize(rgb, (side, side)).astype(np.float32).transpose(2, 0, 1)[None] / np.float32(255)
-        seen = session.run({name: np.ascontiguousarray(pixels)}, {session.outputs[0]: _ANY}, gaps=True)
-        answer = seen[session.outputs[0]]
-        small = _rows(answer).astype(np.float32)
+        small = _rows(session.answer({name: np.ascontiguousarray(pixels)}, _ANY, gaps=True)).astype(np.float32)
         if min(small.shape) < 2 or not (np.isfinite(small) & (small > 0)).any():
             raise NetworkError(self.graph, "answers no depth in metres; give another file as --depth-network")
         depth = cv2.resize(np.where(small > 0, small, 0.0).astype(np.float32), (width, height))
@@ -169,11 +158,6 @@ class FileDepth:
 def _rows(answer: np.ndarray) -> Float[np.ndarray, "n m"]:
     """Without the leading dimensions of size one."""
     return answer.reshape(-1, answer.shape[-1]).astype(np.float64)
-
-
-def _corners(boxes: Float[np.ndarray, "n 4"]) -> Float[np.ndarray, "n 4"]:
-    """Corner boxes from middles and sizes."""
-    return np.concatenate([boxes[:, :2] - boxes[:, 2:] / 2, boxes[:, :2] + boxes[:, 2:] / 2], axis=1)
 
 
 def _need(graph: Path) -> None:

@@ -101,10 +101,7 @@ class Recogniser:
     def alternatives(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int) -> Detections:
         """Boxes to choose from where somebody points: several of one object, each as one look at the picture saw it.
 
-        Args:
-            rgb: the picture, 0 to 255.
-            threshold: least score, 0 to 1.
-            most: boxes at most.
+        Arguments are those of `propose`.
         """
         return self._best(rgb, threshold, most, ALIKE_IOU)
 

@@ -147,11 +147,14 @@ class Session:
             self.check(name, answers.get(name), dims, gaps=gaps)
         return {n: v.astype(np.float32) if v.dtype == np.float16 else v for n, v in answers.items()}
 
+    def answer(self, feeds: Mapping[str, np.ndarray], dims: Dims, *, gaps: bool = False) -> np.ndarray:
+        """The first output alone; see `run`."""
+        first = self.outputs[0]
+        return self.run(feeds, {first: dims}, gaps=gaps)[first]
+
     def _run(self, feeds: Mapping[str, np.ndarray], progress: Progress) -> list[Any]:
         """Compute in a thread; tell the graph to stop when the work was cancelled."""
-        onnxruntime = load_onnxruntime()
-
-        options = onnxruntime.RunOptions()
+        options = load_onnxruntime().RunOptions()
         with ThreadPoolExecutor(1, thread_name_prefix="network") as pool:
             future = pool.submit(self._raw.run, None, dict(feeds), options)
             while not future.done():
@@ -260,6 +263,21 @@ SHARED_SESSIONS = SessionPool()
 """What a process uses unless told otherwise."""
 
 
+@dataclass(frozen=True)
+class GraphNetwork:
+    """A network that is one graph."""
+
+    graph: Path = field(repr=False)
+    weights: str = ""
+    """Identity of the weights, for cache keys."""
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False, kw_only=True)
+
+    @property
+    def session(self) -> Session:
+        """The loaded graph; raises `NetworkError`."""
+        return self.pool.get(self.graph)
+
+
 def thread_count() -> int:
     """Threads of one network: the cores this process may use, at most `MAX_THREADS`.
 
@@ -277,12 +295,10 @@ def thread_count() -> int:
 
 def providers() -> list[str]:
     """Execution providers in the order of preference; the processor comes last and alone with DIORAMA_DEVICE=cpu."""
-    onnxruntime = load_onnxruntime()
-
     cpu = ["CPUExecutionProvider"]
     if os.environ.get("DIORAMA_DEVICE", "").lower() == "cpu":
         return cpu
-    offered = onnxruntime.get_available_providers()
+    offered = load_onnxruntime().get_available_providers()
     cards = [name for name in ACCELERATORS if name in offered]
     if "CUDAExecutionProvider" in cards:
         _preload_cuda()
@@ -297,11 +313,7 @@ def calculates_in_half() -> bool:
 @cache
 def _preload_cuda() -> None:
     """Let onnxruntime find the CUDA and cuDNN libraries that pip installed, where its version can."""
-    onnxruntime = load_onnxruntime()
-
-    preload = getattr(onnxruntime, "preload_dlls", None)
-    if preload is not None:
-        preload()
+    getattr(load_onnxruntime(), "preload_dlls", lambda: None)()
 
 
 def _load(path: Path) -> Session:
@@ -329,7 +341,6 @@ def _session(path: Path) -> tuple[Any, str]:
     with fewer graph optimisations where the full ones fail, as they do for some half-precision graphs.
     """
     onnxruntime = load_onnxruntime()
-
     fewer = onnxruntime.GraphOptimizationLevel.ORT_ENABLE_BASIC
     wanted = providers()
     tries = [(wanted, None, ""), (wanted[-1:], fewer, "loaded with fewer graph optimisations")]
@@ -349,9 +360,7 @@ def _session(path: Path) -> tuple[Any, str]:
 
 
 def _options(level: Any) -> Any:
-    onnxruntime = load_onnxruntime()
-
-    options = onnxruntime.SessionOptions()
+    options = load_onnxruntime().SessionOptions()
     options.intra_op_num_threads = thread_count()
     options.inter_op_num_threads = 1
     options.log_severity_level = 3

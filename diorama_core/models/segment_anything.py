@@ -1,4 +1,6 @@
-"""Masks from boxes: SAM 2.1, SAM 3's tracker and SlimSAM (Ravi et al. 2024; Carion et al. 2025; Chen et al. 2023)."""
+"""Masks from boxes: SAM 2.1, SAM 3's tracker, SlimSAM and, with finer edges, HQ-SAM (Ravi et al. 2024; Carion et al.
+2025; Chen et al. 2023; Ke et al. 2023).
+"""
 
 from __future__ import annotations
 
@@ -15,6 +17,8 @@ from diorama_core.models.runtime import SHARED_SESSIONS, Dims, Session, SessionP
 
 SIDE, MASK_SIDE = 1024, 256
 _MAP: Dims = (None, None, None, None)
+CORNERS = (2.0, 3.0)
+"""Labels of the two points that are a box's upper left and lower right corner, as HQ-SAM takes them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +104,52 @@ class SlimSam:
         square = np.zeros((1, 3, SIDE, SIDE), np.float32)
         square[..., :height, :width] = normalise(resize(rgb, (height, width)), IMAGENET_MEAN, IMAGENET_STD)
         return square
+
+
+@dataclass(frozen=True)
+class HqSam:
+    """HQ-SAM, as its own exporter writes the graphs, which normalise and pad: the longer side becomes 1024."""
+
+    encoder: Path = field(repr=False)
+    decoder: Path = field(repr=False)
+    weights: str = "hq-sam"
+    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
+
+    def masks(self, rgb: UInt8[np.ndarray, "h w 3"], boxes: Float[np.ndarray, "n 4"]) -> Iterator[PromptedMask]:
+        """Masks in the order of the boxes; the picture is encoded once.
+
+        Raises:
+            NetworkError: when a graph is another network's, or fails.
+        """
+        height, width = rgb.shape[:2]
+        inner = fit_size(height, width)
+        encoder, decoder = self.pool.get(self.encoder), self.pool.get(self.decoder)
+        shapes = dict.fromkeys(encoder.outputs, (1, None, None, None))
+        features = encoder.run({encoder.first_input: self.pixels(rgb)}, shapes)
+        first, *inside = (features[name] for name in encoder.outputs)
+        scale = np.array([inner[1] / width, inner[0] / height] * 2)
+        for box in np.asarray(boxes, float).reshape(-1, 4) * scale:
+            out = decoder.run(
+                {
+                    "image_embeddings": first,
+                    "interm_embeddings": np.stack(inside) if inside else np.zeros((0, 1, 1, 1, 1), np.float32),
+                    "point_coords": box.reshape(1, 2, 2).astype(np.float32),
+                    "point_labels": np.array([CORNERS], np.float32),
+                    "mask_input": np.zeros((1, 1, MASK_SIDE, MASK_SIDE), np.float32),
+                    "has_mask_input": np.zeros(1, np.float32),
+                    "orig_im_size": np.array([height, width], np.float32),
+                },
+                {"iou_predictions": (1, None)},
+            )
+            count = out["iou_predictions"].size
+            decoder.check("low_res_masks", out.get("low_res_masks"), (1, count, MASK_SIDE, MASK_SIDE), gaps=True)
+            best = int(out["iou_predictions"][0].argmax())
+            logits = unpad(out["low_res_masks"][0, best], inner, (height, width))
+            yield PromptedMask(logits > 0.0, float(np.clip(out["iou_predictions"][0, best], 0.0, 1.0)))
+
+    def pixels(self, rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "h2 w2 3"]:
+        """Fitted to 1024 pixels, 0 to 255."""
+        return resize(rgb, fit_size(*rgb.shape[:2])).astype(np.float32)
 
 
 def fit_size(height: int, width: int) -> tuple[int, int]:

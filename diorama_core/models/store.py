@@ -18,6 +18,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Any, TypeVar, cast
 
 import platformdirs
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
@@ -33,7 +34,7 @@ RECORD = "installed.json"
 LICENCES = "licences.json"
 FIRST_SEEN = "first-seen.json"
 MAX_RECORD_BYTES = 4_000_000
-_BLOCK = 1 << 20
+_Kept = TypeVar("_Kept")
 _SAME_WEIGHTS = 0.1
 """Relative difference of size up to which files are compared by their content."""
 
@@ -170,7 +171,7 @@ class ModelStore:
         record = self.record(network)
         digest_of_file = digest or sha256_of(arrived)
         key = f"{network.id}@{revision}/{file.path}"
-        first = self._first_seen()
+        first = _read(self.folder / FIRST_SEEN, dict[str, str])
         published = (file.sha256, *file.also_sha256) if file.sha256 else ()
         expected = published or ((first[key],) if key in first and not network.conversion else ())
         if expected and digest_of_file not in expected:
@@ -187,18 +188,7 @@ class ModelStore:
         size = arrived.stat().st_size
         os.replace(arrived, target)
         files = {**record.files, file.path: FileRecord(bytes=size, sha256=digest_of_file)}
-        self._write(network, Installed(revision=revision, files=files))
-
-    def _first_seen(self) -> dict[str, str]:
-        try:
-            return TypeAdapter(dict[str, str]).validate_json(
-                read_bytes(self.folder / FIRST_SEEN, MAX_RECORD_BYTES, UnavailableError)
-            )
-        except (UnavailableError, ValidationError):
-            return {}
-
-    def _write(self, network: Network, record: Installed) -> None:
-        write_json(self.folder_of(network) / RECORD, record.model_dump())
+        write_json(self.folder_of(network) / RECORD, Installed(revision=revision, files=files).model_dump())
 
     def add_folder(self, source: Path) -> tuple[str, ...]:
         """Take up files that were fetched elsewhere: any file below `source` whose content the manifest knows, and
@@ -251,14 +241,7 @@ class ModelStore:
 
     def read_accepted_licences(self) -> frozenset[str]:
         """Read the ids of the networks whose licence was accepted on this machine."""
-        try:
-            return frozenset(
-                TypeAdapter(list[str]).validate_json(
-                    read_bytes(self.folder / LICENCES, MAX_RECORD_BYTES, UnavailableError)
-                )
-            )
-        except (UnavailableError, ValidationError):
-            return frozenset()
+        return frozenset(_read(self.folder / LICENCES, list[str]))
 
     def accept_licences(self, network_ids: frozenset[str]) -> None:
         """Remember that the licences of these networks were accepted."""
@@ -318,10 +301,16 @@ def how_to_get(network: Network) -> str:
 @lru_cache(maxsize=256)
 def _record(path: Path, written_ns: int, size: int) -> Installed:
     """A record as it was written then; asked for at every redraw of a page."""
+    return _read(path, Installed)
+
+
+def _read(path: Path, kind: Callable[[], _Kept]) -> _Kept:
+    """What a file of the store holds; nothing where it is absent or damaged."""
     try:
-        return Installed.model_validate_json(read_bytes(path, MAX_RECORD_BYTES, UnavailableError))
+        kept: _Kept = TypeAdapter(cast("Any", kind)).validate_json(read_bytes(path, MAX_RECORD_BYTES, UnavailableError))
     except (UnavailableError, ValidationError):
-        return Installed()
+        return kind()
+    return kept
 
 
 @lru_cache(maxsize=256)
@@ -352,11 +341,8 @@ def derive_graph(name: str, make: Callable[[], bytes]) -> Path:
 
 def sha256_of(path: Path) -> str:
     """Hexadecimal digest of a file's bytes."""
-    digest = hashlib.sha256()
     with path.open("rb") as file:
-        while block := file.read(_BLOCK):
-            digest.update(block)
-    return digest.hexdigest()
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def write_json(path: Path, value: object) -> None:

@@ -93,26 +93,12 @@ class _Conversion:
         self._convolution(options, kernel, len(kernel), inputs, output)
 
     def _convolution(self, options: Any, kernel: np.ndarray, groups: int, inputs: list[int], output: int) -> None:
-        """Convolve, add the bias and clip.
-
-        Args:
-            options: strides and padding.
-            kernel: real weights (outputs, inputs, height, width).
-            groups: of channels that see each other.
-            inputs: numbers of the tensors: picture, weights, bias.
-            output: number of the result.
-        """
+        """Convolve with real weights (outputs, inputs, height, width) in groups of channels, add the bias and clip."""
         weights = self._constant(f"c{inputs[1]}", kernel.astype(np.float32))
         bias = self._constant(f"c{inputs[2]}", self._real(inputs[2], axis=0).astype(np.float32))
         same = options.Padding() == tflite.Padding.SAME
-        self._node(
-            "Conv",
-            [f"t{inputs[0]}", weights, bias],
-            f"s{output}",
-            group=groups,
-            strides=[options.StrideH(), options.StrideW()],
-            auto_pad="SAME_UPPER" if same else "VALID",
-        )
+        how = {"auto_pad": "SAME_UPPER" if same else "VALID", "strides": [options.StrideH(), options.StrideW()]}
+        self._node("Conv", [f"t{inputs[0]}", weights, bias], f"s{output}", group=groups, **how)
         self._clip(output)
 
     def _enlarge(self, operator: Any, inputs: list[int], output: int) -> None:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
 
 from diorama_core.models.boxes import Detections, clip, without_doubles
-from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
+from diorama_core.models.runtime import GraphNetwork
 
 _GREY = 114.0
 _STRIDES = (8, 16, 32)
@@ -28,13 +27,10 @@ COCO_CLASSES: tuple[str, ...] = tuple(_NAMES.split(","))
 
 
 @dataclass(frozen=True)
-class Yolox:
+class Yolox(GraphNetwork):
     """Input: an upright RGB picture, eight bits, any size. Output: boxes in its pixels with `COCO_CLASSES` indices."""
 
-    graph: Path = field(repr=False)
     weights: str = "yolox"
-    """Identity of the weights, for cache keys."""
-    pool: SessionPool = field(default=SHARED_SESSIONS, repr=False, compare=False)
 
     def detect(
         self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, iou: float = 0.45, *, across_classes: bool = True
@@ -47,12 +43,11 @@ class Yolox:
             iou: overlap (intersection over union) from which the weaker of two boxes goes.
             across_classes: whether boxes of different classes count as overlapping.
         """
-        session = self.pool.get(self.graph)
-        name, first = session.picture_input, session.outputs[0]
+        session, name = self.session, self.session.picture_input
         side = session.side_px(name, 640)
         pixels, scale = letterbox(rgb, side)
         cells = sum((side // stride) ** 2 for stride in _STRIDES)
-        raw = session.run({name: pixels}, {first: (1, cells, 5 + len(COCO_CLASSES))})[first][0]
+        raw = session.answer({name: pixels}, (1, cells, 5 + len(COCO_CLASSES)))[0]
         boxes = decode(raw, side) / scale
         scores = raw[:, 4:5] * raw[:, 5:]
         labels = scores.argmax(axis=1)

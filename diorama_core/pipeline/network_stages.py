@@ -12,14 +12,13 @@ from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
 from diorama_core.models.gigapose import GigaPoseScale
 from diorama_core.models.grounding import GroundingDino
-from diorama_core.models.hq_sam import HqSam
 from diorama_core.models.inpainting import Filler, Lama, Migan
 from diorama_core.models.manifest import network
 from diorama_core.models.network import Network
 from diorama_core.models.openshape import OpenShape
 from diorama_core.models.owlv2 import SIDE, Owlv2
 from diorama_core.models.seen_depth import GeometryNetwork
-from diorama_core.models.segment_anything import BoxSegmenter, Sam2, SlimSam, sam3_tracker
+from diorama_core.models.segment_anything import BoxSegmenter, HqSam, Sam2, SlimSam, sam3_tracker
 from diorama_core.models.store import ModelStore
 from diorama_core.models.yolox import Yolox
 from diorama_core.perception.foundation.detection import EverydayDetection, OpenVocabularyDetection

@@ -11,6 +11,7 @@ import numpy as np
 from diorama_core.export.gathering import ExportOptions, ExportScene, gather
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.progress import CancelToken, Progress
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.types import Architecture, Pose, Scene, SceneObject, Support
@@ -38,6 +39,12 @@ def desk_in_dresser() -> ExportScene:
     desk, dresser = scene.object("desk_1"), scene.object("dresser_1")
     inside = replace(desk.pose, position=np.array([*dresser.pose.position[:2], desk.pose.position[2]]))
     return gather(edits.move(scene, desk.id, inside), library, options=ExportOptions(joints=True))
+
+
+def stopping_at(fraction: float) -> Progress:
+    """Progress that asks to stop when so much is done."""
+    token = CancelToken()
+    return Progress(lambda event: token.cancel() if event.fraction >= fraction else None, token)
 
 
 @cache

@@ -13,25 +13,41 @@ from diorama_core.errors import Cancelled, ExportError, UnavailableError
 from diorama_core.export import FORMATS, export_scene, format_named
 from diorama_core.export.files import companion_folder, whole_file, write_package
 from diorama_core.export.gathering import gather
-from diorama_core.progress import CancelToken, Progress
+from diorama_core.scene.types import Scene
+from tests.export.scenes import stopping_at
 from tests.primitives import PrimitiveLibrary, furnished_room
 
 LIBRARY = PrimitiveLibrary()
 
 
-@pytest.mark.parametrize("name", list(FORMATS))
-def test_cancelling_leaves_the_older_file(name: str, tmp_path: Path) -> None:
-    chosen = FORMATS[name]
-    if chosen.missing:
-        pytest.skip(chosen.missing)
-    path = tmp_path / f"room{chosen.suffixes[0]}"
+BEFORE_WRITING = [(name, chosen.suffixes[0], 0.5) for name, chosen in FORMATS.items()]
+IN_THE_MIDST = [
+    *(("svg", ".svg", 0.54), ("pdf", ".pdf", 0.54), ("dxf", ".dxf", 0.54)),
+    *(("obj", ".obj", 0.75), ("obj", ".zip", 0.75), ("ply", ".ply", 0.75), ("stl", ".stl", 0.75)),
+]
+
+
+@pytest.mark.parametrize(("name", "suffix", "fraction"), [*BEFORE_WRITING, *IN_THE_MIDST])
+def test_cancelling_leaves_the_older_file(name: str, suffix: str, fraction: float, tmp_path: Path) -> None:
+    if FORMATS[name].missing:
+        pytest.skip(FORMATS[name].missing)
+    path = tmp_path / f"room{suffix}"
     path.write_bytes(b"old")
-    token = CancelToken()
-    progress = Progress(on_event=lambda event: token.cancel() if event.fraction >= 0.5 else None, token=token)
     with pytest.raises(Cancelled):
-        export_scene(furnished_room(LIBRARY), LIBRARY, path, name, progress=progress)
+        export_scene(furnished_room(LIBRARY), LIBRARY, path, name, progress=stopping_at(fraction))
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("name", ["glb", "obj", "ply", "stl"])
+def test_a_folder_that_cannot_be_written_is_one_clear_line(name: str, tmp_path: Path) -> None:
+    blocked = tmp_path / "file"
+    blocked.write_text("in the way")
+    for folder in (tmp_path / "missing", blocked):
+        with pytest.raises(ExportError, match="cannot write") as caught:
+            export_scene(Scene(), LIBRARY, folder / f"room{FORMATS[name].suffixes[0]}", name)
+        assert "\n" not in str(caught.value)
+    assert list(tmp_path.iterdir()) == [blocked]
 
 
 @pytest.mark.parametrize(("name", "suffix"), [(n, s) for n, f in FORMATS.items() for s in f.suffixes])

@@ -5,8 +5,6 @@ from __future__ import annotations
 import io
 import json
 from dataclasses import replace
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -15,8 +13,8 @@ from PIL import Image
 from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 
-from diorama_core.errors import ExportError, LibraryError
-from diorama_core.export.gathering import ExportOptions, ExportScene
+from diorama_core.errors import LibraryError
+from diorama_core.export.gathering import ExportOptions
 from diorama_core.export.gltf import glb_bytes, write_gathered, write_glb
 from diorama_core.scene.schema import scene_from_json
 from diorama_core.scene.types import Architecture, Intrinsics, Scene
@@ -144,8 +142,9 @@ def test_pictures_are_limited_and_have_sides_of_powers_of_two() -> None:
         assert seen["extensions"]["KHR_materials_specular"]["specularFactor"] == 0.0
 
 
-def test_lamps_and_windows_shine() -> None:
-    document = gltf_reader.check(_glb(gathered("fittings")))
+def test_lamps_and_windows_shine(tmp_path) -> None:
+    write_gathered(gathered("fittings"), tmp_path / "scene.glb")
+    document = gltf_reader.check((tmp_path / "scene.glb").read_bytes())
     lights = document["extensions"]["KHR_lights_punctual"]["lights"]
     assert {light["type"] for light in lights if light["name"] != "even light"} == {"point", "spot"}
     spot = next(n for n in document["nodes"] if n["name"].startswith("window") and "extensions" in n)
@@ -155,8 +154,10 @@ def test_lamps_and_windows_shine() -> None:
     np.testing.assert_allclose(into_room, [0.0, -1.0, 0.0], atol=1e-9)
 
 
-def test_compressed_geometry_is_the_same_within_a_tenth_of_a_millimetre() -> None:
-    plain, packed = (_glb(gathered("example", compression=c)) for c in ("none", "meshopt"))
+def test_compressed_geometry_is_the_same_within_a_tenth_of_a_millimetre(tmp_path) -> None:
+    for name in ("none", "meshopt"):
+        write_gathered(gathered("example", compression=name), tmp_path / name)
+    plain, packed = ((tmp_path / name).read_bytes() for name in ("none", "meshopt"))
     assert len(packed) < 0.8 * len(plain)
     (document, binary), (other, data) = gltf_reader.read(plain), gltf_reader.read(packed)
     for mesh, same in zip(document["meshes"], other["meshes"], strict=True):
@@ -174,14 +175,6 @@ def _assert_same_triangles(a: np.ndarray, b: np.ndarray) -> None:
     assert distance.max() < 1e-4
     areas = [np.linalg.norm(np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]), axis=1).sum() for t in (a, b)]
     assert areas[0] == pytest.approx(areas[1], rel=1e-2)
-
-
-def _glb(scene: ExportScene) -> bytes:
-    buffer = io.BytesIO()
-    with TemporaryDirectory() as folder:
-        write_gathered(scene, Path(folder) / "scene.glb")
-        buffer.write((Path(folder) / "scene.glb").read_bytes())
-    return buffer.getvalue()
 
 
 def test_identical_shapes_share_a_mesh_and_colours_do_not_leak() -> None:
@@ -286,13 +279,3 @@ def test_write_replaces_whole_files(tmp_path) -> None:
     write_glb(furnished_room(LIBRARY), LIBRARY, target)
     gltf_reader.check(target.read_bytes())
     assert [p.name for p in tmp_path.iterdir()] == ["room.glb"]
-
-
-def test_a_folder_that_cannot_be_written_is_one_clear_line(tmp_path) -> None:
-    blocked = tmp_path / "file"
-    blocked.write_text("in the way")
-    for target in (tmp_path / "missing" / "room.glb", blocked / "room.glb"):
-        with pytest.raises(ExportError, match="cannot write") as caught:
-            write_glb(Scene(), LIBRARY, target)
-        assert "\n" not in str(caught.value)
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["file"]

@@ -10,9 +10,7 @@ import open3d
 import pytest
 import trimesh
 
-from diorama_core.errors import Cancelled, ExportError
 from diorama_core.export import export_scene
-from diorama_core.progress import CancelToken, Progress
 from diorama_core.scene.types import Architecture
 from tests.primitives import PrimitiveLibrary, furnished_room
 
@@ -59,19 +57,12 @@ def test_objects_keep_their_names_and_places(tmp_path) -> None:
 
 def test_companions_lie_beside_an_obj_and_open3d_reads_them(tmp_path) -> None:
     scene, textures = photographed_room()
-    export_scene(scene, LIBRARY, tmp_path / "room.obj", "obj", textures=textures)
+    gathered = export_scene(scene, LIBRARY, tmp_path / "room.obj", "obj", textures=textures)
     assert {p.name for p in tmp_path.iterdir()} == {"room.obj", "room_files"}
     mesh = open3d.io.read_triangle_mesh(str(tmp_path / "room.obj"), enable_post_processing=True)
     assert len(mesh.textures) >= 2
-    expected = sum(export.triangles for export in _meshes(scene))
-    assert len(mesh.triangles) == expected
-
-
-def _meshes(scene):
-    from diorama_core.export.gathering import gather
-
-    gathered = gather(scene, LIBRARY)
-    return [gathered.meshes[x.mesh] for x in (*gathered.planes, *gathered.objects)]
+    written = (*gathered.planes, *gathered.objects)
+    assert len(mesh.triangles) == sum(gathered.meshes[x.mesh].triangles for x in written)
 
 
 def test_materials_say_colour_metal_and_roughness(tmp_path) -> None:
@@ -81,25 +72,3 @@ def test_materials_say_colour_metal_and_roughness(tmp_path) -> None:
     assert "Kd 0.698039 0.050980 0.050980" in blocks["red"]
     assert "Pr 0.7000" in blocks["red"]
     assert "Pm 0.0000" in blocks["red"]
-
-
-@pytest.mark.parametrize(
-    ("name", "kind"), [("room.obj", "obj"), ("room.zip", "obj"), ("r.ply", "ply"), ("r.stl", "stl")]
-)
-def test_cancelling_leaves_nothing(tmp_path, name: str, kind: str) -> None:
-    token = CancelToken()
-
-    def on_event(event) -> None:
-        if event.fraction > 0.75:
-            token.cancel()
-
-    with pytest.raises(Cancelled):
-        export_scene(furnished_room(LIBRARY), LIBRARY, tmp_path / name, kind, progress=Progress(on_event, token))
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("kind", ["obj", "ply", "stl"])
-def test_a_missing_folder_is_one_clear_line(tmp_path, kind: str) -> None:
-    with pytest.raises(ExportError, match="cannot write") as caught:
-        export_scene(furnished_room(LIBRARY), LIBRARY, tmp_path / "missing" / f"room.{kind}", kind)
-    assert "\n" not in str(caught.value)

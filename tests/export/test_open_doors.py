@@ -175,11 +175,11 @@ def test_usd_places_it_open_and_its_joints_agree(half_open: ExportScene, suffix:
     pytest.importorskip("pxr", reason="needs the extra [usd]")
     from pxr import Usd, UsdGeom, UsdPhysics
 
-    from diorama_core.export.usd import write_usda, write_usdz
+    from diorama_core.export.usd import write_layer, write_usdz
     from tests.export.validators import usd_findings
 
     path = tmp_path / f"room.{suffix}"
-    {"usda": write_usda, "usdz": write_usdz}[suffix](half_open, path)
+    {"usda": write_layer, "usdz": write_usdz}[suffix](half_open, path)
     assert usd_findings(path) == []
     stage = Usd.Stage.Open(str(path))
     cache = UsdGeom.XformCache()

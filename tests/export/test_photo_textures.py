@@ -14,7 +14,7 @@ from PIL import Image
 from diorama_core.export import FORMATS, export_scene
 from diorama_core.export.gathering import ExportOptions, gather
 from diorama_core.export.gltf import write_gathered
-from diorama_core.export.photo_textures import fit_pictures
+from diorama_core.export.pictures import fit_pictures
 from diorama_core.importing.forms import read_mark
 from diorama_core.importing.opening import open_marked
 from diorama_core.library.catalogue import built_in_library

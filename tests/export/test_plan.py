@@ -9,14 +9,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.errors import Cancelled, ExportError
+from diorama_core.errors import ExportError
 from diorama_core.export import export_scene
 from diorama_core.export.gathering import gather
 from diorama_core.export.plan import floor_plan
 from diorama_core.export.plan_dxf import TEXT_MM
 from diorama_core.export.plan_sheet import SheetLine, Text, plan_sheet
 from diorama_core.geometry.planes import signed_area
-from diorama_core.progress import CancelToken, Progress
 from diorama_core.scene.types import Architecture, Plane, Pose, Scene, SceneObject, Support
 from tests.export.scenes import scene_of
 from tests.primitives import PrimitiveLibrary, box_room, furnished_room
@@ -201,19 +200,3 @@ def test_an_empty_scene_has_a_plan(tmp_path) -> None:
     for kind in ("svg", "dxf", "pdf"):
         export_scene(Scene(), LIBRARY, tmp_path / f"empty.{kind}", kind)
         assert (tmp_path / f"empty.{kind}").stat().st_size > 0
-
-
-@pytest.mark.parametrize("kind", ["svg", "pdf", "dxf"])
-def test_cancelling_leaves_the_old_file(tmp_path, kind: str) -> None:
-    token = CancelToken()
-    path = tmp_path / f"p.{kind}"
-    path.write_text("old")
-
-    def on_event(event) -> None:
-        if event.fraction >= 0.54:
-            token.cancel()
-
-    with pytest.raises(Cancelled):
-        export_scene(Scene(architecture=box_room()), LIBRARY, path, kind, progress=Progress(on_event, token))
-    assert path.read_text() == "old"
-    assert len(list(tmp_path.iterdir())) == 1

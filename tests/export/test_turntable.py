@@ -8,8 +8,8 @@ from PIL import Image
 
 from diorama_core.errors import Cancelled, ExportError
 from diorama_core.export.turntable import orbit_cameras, write_turntable
-from diorama_core.progress import CancelToken, Progress
 from diorama_core.scene.types import Scene
+from tests.export.scenes import stopping_at
 from tests.primitives import PrimitiveLibrary, furnished_room
 
 LIBRARY = PrimitiveLibrary()
@@ -56,18 +56,10 @@ def test_mp4_is_h264_in_the_colours_of_the_scene(tmp_path) -> None:
 
 
 def test_cancelling_leaves_nothing(tmp_path) -> None:
-    token = CancelToken()
-
-    def on_event(event) -> None:
-        if event.fraction > 0.3:
-            token.cancel()
-
     for name in ("room.gif", "room.mp4"):
+        how = {"size": SMALL, "frames": 3, "progress": stopping_at(0.3)}
         with pytest.raises(Cancelled):
-            write_turntable(
-                furnished_room(LIBRARY), LIBRARY, tmp_path / name, size=SMALL, frames=3,
-                progress=Progress(on_event, token),
-            )  # fmt: skip
+            write_turntable(furnished_room(LIBRARY), LIBRARY, tmp_path / name, **how)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -10,19 +10,23 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 pytest.importorskip("pxr", reason="usd-core is not installed (optional extra 'usd')")
 
-from pxr import Sdf, Usd, UsdGeom, UsdLux, UsdPhysics, UsdShade
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdPhysics, UsdShade
 
 from diorama_core.export.colliders import physical_scene
 from diorama_core.export.gathering import gather
-from diorama_core.export.usd import write_usda, write_usdc, write_usdz
+from diorama_core.export.usd import write_layer, write_usdz
+from diorama_core.export.usd_materials import extent, integers, place, quaternion, vectors
+from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.scene.schema import scene_from_json
 from tests.export.scenes import SOURCES, gathered, scene_of
 from tests.export.validators import usd_findings
 
-WRITERS = {"usda": write_usda, "usdc": write_usdc, "usdz": write_usdz}
+WRITERS = {"usda": write_layer, "usdc": write_layer, "usdz": write_usdz}
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +47,7 @@ def example(written: dict[str, Path]) -> Usd.Stage:
 def fittings(tmp_path_factory: pytest.TempPathFactory) -> Usd.Stage:
     """The room of what opens, with its joints."""
     path = tmp_path_factory.mktemp("fittings") / "room.usdc"
-    write_usdc(gathered("fittings", joints=True), path)
+    write_layer(gathered("fittings", joints=True), path)
     return Usd.Stage.Open(str(path))
 
 
@@ -60,7 +64,7 @@ def test_all_validators_find_nothing_in_any_room(source: str, tmp_path: Path) ->
 
 def test_the_validators_do_find_something_wrong(tmp_path: Path) -> None:
     path = tmp_path / "room.usda"
-    write_usda(gathered("primitives"), path)
+    write_layer(gathered("primitives"), path)
     stage = Usd.Stage.Open(str(path))
     stage.GetRootLayer().ClearDefaultPrim()
     UsdGeom.Xform.Define(stage, "/Scene/Objects/t/Colliders/Part_0/Inside")
@@ -112,7 +116,7 @@ def test_shapes_are_instances_of_shared_prototypes(example: Usd.Stage, tmp_path:
     """Chairs of one shape share one, where the photo's materials do not tell them apart."""
     scene, library = scene_of("example")
     plain = replace(scene, objects=tuple(replace(o, colour=None, material_source="library") for o in scene.objects))
-    write_usda(gather(plain, library), tmp_path / "room.usda")
+    write_layer(gather(plain, library), tmp_path / "room.usda")
     stage = Usd.Stage.Open(str(tmp_path / "room.usda"))
     chairs = [stage.GetPrimAtPath(f"/Scene/Objects/chair_{k}/Shape") for k in (1, 2, 3)]
     assert all(c.IsInstance() for c in chairs)
@@ -213,3 +217,26 @@ def test_the_camera_sees_what_the_photo_saw(example: Usd.Stage) -> None:
         k = camera.intrinsics
         pixel = [(x + 1) / 2 * k.width, (1 - y) / 2 * k.height]
         np.testing.assert_allclose(pixel, camera.project(np.array(point)), atol=0.05)
+
+
+@given(st.tuples(*[st.floats(-3, 3)] * 3).map(np.array), st.tuples(*[st.floats(-9, 9)] * 3).map(np.array))
+def test_a_prim_is_placed_as_the_matrix_says(turn, position) -> None:
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = rotation_from_vector(turn), position
+    stage = Usd.Stage.CreateInMemory()
+    prim = UsdGeom.Xform.Define(stage, "/x")
+    place(prim, T)
+    # USD's matrices act on rows.
+    np.testing.assert_allclose(np.array(prim.GetLocalTransformation()).T, T, atol=1e-6)
+    q = quaternion(T[:3, :3])
+    assert q.GetReal() >= -1e-12
+    v = Gf.Rotation(q).TransformDir(Gf.Vec3d(1, 2, 3))
+    np.testing.assert_allclose(v, T[:3, :3] @ [1, 2, 3], atol=1e-6)
+
+
+def test_arrays_keep_their_numbers() -> None:
+    points = np.array([[1.0, -2.0, 3.0], [0.5, 4.0, -1.0]])
+    np.testing.assert_array_equal(np.array(vectors(points)), points)
+    np.testing.assert_array_equal(np.array(extent(points)), [[0.5, -2, -1], [1, 4, 3]])
+    assert list(integers(np.array([3, 1, 2], np.int64))) == [3, 1, 2]
+    np.testing.assert_array_equal(np.array(vectors(points[:, ::-1])), points[:, ::-1])

@@ -20,7 +20,7 @@ from diorama_core.editing.positioning import Positioner
 from diorama_core.errors import DioramaError, InputError
 from diorama_core.export.gathering import ExportOptions, gather
 from diorama_core.export.gltf import glb_bytes
-from diorama_core.export.usd import write_usda, write_usdc
+from diorama_core.export.usd import write_layer
 from diorama_core.export.usd import write_usdz as write_usd_package
 from diorama_core.importing.forms import read_mark
 from diorama_core.importing.gltf import read_marked_gltf
@@ -172,7 +172,7 @@ def usd_samples() -> tuple[bytes, ...]:
             mesh.CreateFaceVertexIndicesAttr([0, 1, 2, 3, 0, 1, 4, 1, 2, 4])
             UsdGeom.Xformable(mesh).AddTranslateOp().Set((2.0, 0.0, 0.0))
         stage.Save()
-        for suffix, write in (("usda", write_usda), ("usdc", write_usdc), ("usdz", write_usd_package)):
+        for suffix, write in (("usda", write_layer), ("usdc", write_layer), ("usdz", write_usd_package)):
             write(gathered, Path(folder) / f"room.{suffix}")
         write_usdz(Path(folder) / "scan.usdz")
         names = ("room.usda", "room.usdc", "room.usdz", "other.usda", "scan.usdz")

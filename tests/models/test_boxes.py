@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from diorama_core.models.boxes import Detections, overlaps, without_doubles
+from diorama_core.models.boxes import Detections, overlaps, without_doubles, without_parts_of_same
 
 
 def detections(*rows: tuple[float, float, float, float, float, int]) -> Detections:
@@ -28,3 +28,16 @@ def test_of_boxes_that_overlap_the_best_stays(rows: list) -> None:
     for box, score in zip(found.boxes, found.scores, strict=True):
         same = overlaps(box[None], stayed.boxes)[0] > 0.5 - 1e-9
         assert (stayed.scores[same] >= score).any(), "what went has a better one in its place"
+
+
+def test_doubles_go_and_the_best_stays() -> None:
+    found = detections((0, 0, 10, 10, 0.6, 0), (0, 0, 10, 9.5, 0.9, 1), (20, 0, 30, 10, 0.5, 0))
+    assert list(without_doubles(found, 0.8, across_classes=True).scores) == [0.9, 0.5]
+    assert len(without_doubles(found, 0.8, across_classes=False)) == 3
+
+
+def test_parts_of_an_object_of_the_same_class_go() -> None:
+    chair_with_part = detections((0, 0, 10, 10, 0.9, 0), (2, 2, 6, 6, 0.5, 0), (2, 2, 6, 6, 0.4, 1))
+    assert list(without_parts_of_same(chair_with_part, 0.8).scores) == [0.9, 0.4]
+    lumped = detections((0, 0, 20, 10, 0.3, 0), (0, 0, 10, 10, 0.9, 0), (10, 0, 20, 10, 0.8, 0))
+    assert sorted(without_parts_of_same(lumped, 0.8).scores) == [0.8, 0.9]

@@ -192,10 +192,10 @@ def test_openclip_is_converted_from_a_folder_with_its_weights_beside_the_graphs(
     facade = network_stages.open_clip(store, network("openclip-bigg14"))
     picture = rng.integers(0, 255, (300, 240, 3)).astype(np.uint8)
     with torch.no_grad():
-        seen = tiny_networks._ClipImage(model)(torch.from_numpy(clip_pixels(picture)))
+        seen = tiny_networks.clip_image(model, torch.from_numpy(clip_pixels(picture)))
         ids = torch.zeros(1, 77, dtype=torch.long)
         ids[0, :6] = torch.tensor([30, 2, 3, 4, 5, 31])
-        read = tiny_networks._ClipText(model)(ids)
+        read = tiny_networks.clip_text(model, ids)
     for found, expected in ((facade.images([picture]), seen), (facade.texts(["a photo of chair"]), read)):
         np.testing.assert_allclose(found, nn.functional.normalize(expected, dim=1).numpy(), atol=5e-3)
 

@@ -18,11 +18,10 @@ from diorama_core.errors import UnavailableError
 from diorama_core.models.clip import DuoduoClip, OpenClip, clip_pixels
 from diorama_core.models.features import Dinov2
 from diorama_core.models.foreground import Foreground
-from diorama_core.models.hq_sam import HqSam
 from diorama_core.models.inpainting import Lama, Migan
 from diorama_core.models.owlv2 import Owlv2
 from diorama_core.models.runtime import SessionPool
-from diorama_core.models.segment_anything import Sam2, SlimSam, sam3_tracker
+from diorama_core.models.segment_anything import HqSam, Sam2, SlimSam, sam3_tracker
 from tests.models import tiny_networks, tiny_sams
 
 
@@ -55,23 +54,13 @@ def owlv2(folder: Path) -> tuple[Any, Path]:
 
 
 @pytest.fixture(scope="module")
-def sam2(folder: Path) -> tuple[Any, Path, Path]:
-    return tiny_sams.sam2(folder / "sam2")
-
-
-@pytest.fixture(scope="module")
 def slimsam(folder: Path) -> tuple[Any, Path, Path]:
     return tiny_sams.slimsam(folder / "slimsam")
 
 
 @pytest.fixture(scope="module")
-def sam3(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Path, Path]:
-    return tiny_sams.sam3_tracker(tmp_path_factory.mktemp("sam3"))
-
-
-@pytest.fixture(scope="module")
-def hq_sam(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Path, Path]:
-    return tiny_sams.hq_sam(tmp_path_factory.mktemp("hq_sam"))
+def hq_sam(folder: Path) -> tuple[Any, Path, Path]:
+    return tiny_sams.hq_sam(folder / "hq_sam")
 
 
 @pytest.fixture(scope="module")
@@ -111,40 +100,34 @@ def _drawn_alike(mask: np.ndarray, expected: torch.Tensor) -> None:
     assert 0.001 < mask.mean() < 0.999
 
 
+IMAGENET = ((0.485, 0.456, 0.406), (0.229, 0.224, 0.225))
+
+
 @ONE_SHAPE
-def test_sam2_draws_the_same_masks(sam2: tuple[Any, Path, Path], photo: np.ndarray) -> None:
-    model, encoder, decoder = sam2
+@pytest.mark.parametrize(
+    ("make", "tracker", "side", "statistics", "atol"),
+    [
+        (tiny_sams.sam2, Sam2, 1024, IMAGENET, 1e-5),
+        # One of 255 steps, where halves are rounded.
+        (tiny_sams.sam3_tracker, sam3_tracker, 1008, ((0.5,) * 3, (0.5,) * 3), 1.1 / 127.5),
+    ],
+    ids=["SAM 2", "SAM 3"],
+)
+def test_sams_trackers_draw_the_same_masks(
+    tmp_path: Path, photo: np.ndarray, make: Any, tracker: Any, side: int, statistics: Any, atol: float
+) -> None:
+    model, encoder, decoder = make(tmp_path)
+    facade = tracker(encoder, decoder, pool=SessionPool())
     height, width = photo.shape[:2]
     boxes = np.array([[20.0, 30.0, 100.0, 110.0], [5.0, 5.0, width - 5.0, height - 5.0]])
-    mean, std = (torch.tensor(v).view(1, 3, 1, 1) for v in ((0.485, 0.456, 0.406), (0.229, 0.224, 0.225)))
-    found = list(Sam2(encoder, decoder, pool=SessionPool()).masks(photo, boxes))
+    mean, std = (torch.tensor(v).view(1, 3, 1, 1) for v in statistics)
     # Torchvision's stretch of a tensor, which the published processor uses.
     raw = torch.from_numpy(photo).permute(2, 0, 1)[None]
-    stretched = torch.nn.functional.interpolate(raw, (1024, 1024), mode="bilinear", antialias=True)
-    assert np.abs(Sam2(encoder, decoder).pixels(photo) - ((stretched / 255 - mean) / std).numpy()).max() < 1e-5
+    stretched = torch.nn.functional.interpolate(raw, (side, side), mode="bilinear", antialias=True)
+    pixels = (stretched / 255 - mean) / std
+    assert np.abs(facade.pixels(photo) - pixels.numpy()).max() < atol
     with torch.no_grad():
-        scaled = torch.from_numpy(boxes).float() * torch.tensor([1024 / width, 1024 / height] * 2)
-        out = model(pixel_values=(stretched / 255 - mean) / std, input_boxes=scaled[None])
-    for index, prompted in enumerate(found):
-        best = int(out.iou_scores[0, index].argmax())
-        logits = out.pred_masks[0, index, best][None, None]
-        _drawn_alike(prompted.mask, torch.nn.functional.interpolate(logits, (height, width), mode="bilinear")[0, 0] > 0)
-
-
-@ONE_SHAPE
-def test_sam3s_tracker_draws_the_same_masks(sam3: tuple[Any, Path, Path], photo: np.ndarray) -> None:
-    model, encoder, decoder = sam3
-    height, width = photo.shape[:2]
-    boxes = np.array([[20.0, 30.0, 100.0, 110.0], [5.0, 5.0, width - 5.0, height - 5.0]])
-    facade = sam3_tracker(encoder, decoder, pool=SessionPool())
-    raw = torch.from_numpy(photo).permute(2, 0, 1)[None]
-    stretched = torch.nn.functional.interpolate(raw, (1008, 1008), mode="bilinear", antialias=True)
-    pixels = (stretched / 255 - 0.5) / 0.5
-    assert (
-        np.abs(facade.pixels(photo) - pixels.numpy()).max() < 1.1 / 127.5
-    )  # one of 255 steps, where halves are rounded
-    with torch.no_grad():
-        scaled = torch.from_numpy(boxes).float() * torch.tensor([1008 / width, 1008 / height] * 2)
+        scaled = torch.from_numpy(boxes).float() * torch.tensor([side / width, side / height] * 2)
         out = model(pixel_values=pixels, input_boxes=scaled[None])
     for index, prompted in enumerate(facade.masks(photo, boxes)):
         best = int(out.iou_scores[0, index].argmax())
@@ -152,48 +135,40 @@ def test_sam3s_tracker_draws_the_same_masks(sam3: tuple[Any, Path, Path], photo:
         _drawn_alike(prompted.mask, torch.nn.functional.interpolate(logits, (height, width), mode="bilinear")[0, 0] > 0)
 
 
+def _prepared(photo: np.ndarray, boxes: np.ndarray) -> tuple[Any, torch.Tensor]:
+    """What the processor makes of a photo, and boxes in its pixels."""
+    prepared = SamImageProcessorPil()(Image.fromarray(photo), return_tensors="pt")
+    (height, width), (inner_h, inner_w) = photo.shape[:2], (int(v) for v in prepared["reshaped_input_sizes"][0])
+    return prepared, torch.from_numpy(boxes).float() * torch.tensor([inner_w / width, inner_h / height] * 2)
+
+
+def _best_mask(out: Any, prepared: Any) -> torch.Tensor:
+    sizes = prepared["original_sizes"], prepared["reshaped_input_sizes"]
+    return SamImageProcessorPil().post_process_masks(out.pred_masks, *sizes)[0][0, int(out.iou_scores[0, 0].argmax())]
+
+
 def test_hq_sam_draws_the_same_masks(hq_sam: tuple[Any, Path, Path], photo: np.ndarray) -> None:
     model, encoder, decoder = hq_sam
     facade = HqSam(encoder, decoder, pool=SessionPool())
-    height, width = photo.shape[:2]
     boxes = np.array([[20.0, 30.0, 100.0, 110.0], [40.0, 10.0, 90.0, 60.0]])
-    prepared = SamImageProcessorPil()(Image.fromarray(photo), return_tensors="pt")
-    inner_h, inner_w = (int(v) for v in prepared["reshaped_input_sizes"][0])
-    scaled = torch.from_numpy(boxes).float() * torch.tensor([inner_w / width, inner_h / height] * 2)
+    prepared, scaled = _prepared(photo, boxes)
     with torch.no_grad():
         embeddings, inside = model.get_image_embeddings(prepared["pixel_values"])
-    for box, prompted in zip(scaled, facade.masks(photo, boxes), strict=True):
-        with torch.no_grad():
-            out = model(
-                image_embeddings=embeddings,
-                intermediate_embeddings=inside,
-                input_boxes=box[None, None],
-                multimask_output=True,
-            )
-        best = int(out.iou_scores[0, 0].argmax())
-        masks = SamImageProcessorPil().post_process_masks(
-            out.pred_masks, prepared["original_sizes"], prepared["reshaped_input_sizes"]
-        )
-        _drawn_alike(prompted.mask, masks[0][0, best])
+        seen = {"image_embeddings": embeddings, "intermediate_embeddings": inside}
+        for box, prompted in zip(scaled, facade.masks(photo, boxes), strict=True):
+            out = model(**seen, input_boxes=box[None, None], multimask_output=True)
+            _drawn_alike(prompted.mask, _best_mask(out, prepared))
 
 
 def test_slimsam_draws_the_same_masks(slimsam: tuple[Any, Path, Path], photo: np.ndarray) -> None:
     model, encoder, decoder = slimsam
     facade = SlimSam(encoder, decoder, pool=SessionPool())
-    height, width = photo.shape[:2]
-    box = np.array([20.0, 30.0, 100.0, 110.0])
-    prepared = SamImageProcessorPil()(Image.fromarray(photo), return_tensors="pt")
+    boxes = np.array([[20.0, 30.0, 100.0, 110.0]])
+    prepared, scaled = _prepared(photo, boxes)
     np.testing.assert_allclose(facade.pixels(photo), prepared["pixel_values"].numpy(), atol=1e-5)
-    inner_h, inner_w = (int(v) for v in prepared["reshaped_input_sizes"][0])
-    scaled = torch.from_numpy(box).float() * torch.tensor([inner_w / width, inner_h / height] * 2)
     with torch.no_grad():
-        out = model(pixel_values=prepared["pixel_values"], input_boxes=scaled[None, None], multimask_output=True)
-    best = int(out.iou_scores[0, 0].argmax())
-    masks = SamImageProcessorPil().post_process_masks(
-        out.pred_masks, prepared["original_sizes"], prepared["reshaped_input_sizes"]
-    )
-    found = next(facade.masks(photo, box[None]))
-    _drawn_alike(found.mask, masks[0][0, best])
+        out = model(pixel_values=prepared["pixel_values"], input_boxes=scaled[None], multimask_output=True)
+    _drawn_alike(next(facade.masks(photo, boxes)).mask, _best_mask(out, prepared))
 
 
 @ONE_SHAPE
@@ -204,7 +179,7 @@ def test_dinov2_reads_the_same_features_from_any_block(
     model, graph = dinov2
     facade = Dinov2(graph, block=block, pool=SessionPool())
     found = facade.batch([photo, photo[::-1].copy()])
-    pixels = torch.cat([_imagenet(p) for p in (photo, photo[::-1].copy())])
+    pixels = torch.cat([_imagenet(p, 224) for p in (photo, photo[::-1].copy())])
     with torch.no_grad():
         states = model(pixels, output_hidden_states=True).hidden_states
         expected = model.layernorm(states[-1 if block is None else block + 1])[:, 1:]
@@ -212,9 +187,9 @@ def test_dinov2_reads_the_same_features_from_any_block(
     np.testing.assert_allclose(found, expected.reshape(2, 16, 16, 24).numpy(), atol=1e-4)
 
 
-def _imagenet(rgb: np.ndarray) -> torch.Tensor:
-    small = np.asarray(Image.fromarray(rgb).resize((224, 224), Image.Resampling.BILINEAR)).astype(np.float64) / 255
-    return torch.from_numpy(((small - [0.485, 0.456, 0.406]) / [0.229, 0.224, 0.225]).transpose(2, 0, 1)[None]).float()
+def _imagenet(rgb: np.ndarray, side: int) -> torch.Tensor:
+    small = np.asarray(Image.fromarray(rgb).resize((side, side), Image.Resampling.BILINEAR)).astype(np.float64) / 255
+    return torch.from_numpy(((small - IMAGENET[0]) / IMAGENET[1]).transpose(2, 0, 1)[None]).float()
 
 
 def test_a_block_that_is_not_there_is_one_clear_line(dinov2: tuple[Any, Path]) -> None:
@@ -230,10 +205,10 @@ def test_openclip_embeds_the_same(tmp_path: Path, photo: np.ndarray) -> None:
     pixels = CLIPImageProcessorPil()(Image.fromarray(photo), return_tensors="pt")["pixel_values"]
     np.testing.assert_allclose(clip_pixels(photo), pixels.numpy(), atol=1e-5)
     with torch.no_grad():
-        seen = torch.nn.functional.normalize(tiny_networks._ClipImage(model)(pixels), dim=1)
+        seen = torch.nn.functional.normalize(tiny_networks.clip_image(model, pixels), dim=1)
         ids = torch.zeros(1, 77, dtype=torch.long)
         ids[0, :6] = torch.tensor([30, 2, 3, 4, 5, 31])
-        read = torch.nn.functional.normalize(tiny_networks._ClipText(model)(ids), dim=1)
+        read = torch.nn.functional.normalize(tiny_networks.clip_text(model, ids), dim=1)
     np.testing.assert_allclose(facade.images([photo]), seen.numpy(), atol=1e-4)
     np.testing.assert_allclose(facade.texts(["A  photo of CHAIR"]), read.numpy(), atol=1e-4)
     assert facade.texts([]).shape == (0, 512)
@@ -244,36 +219,22 @@ def test_openclip_embeds_the_same(tmp_path: Path, photo: np.ndarray) -> None:
 
 
 @ONE_SHAPE
-def test_birefnet_gives_the_same_probabilities_and_runs_twice(tmp_path: Path, photo: np.ndarray) -> None:
-    network, graph = tiny_networks.birefnet(tmp_path / "model.onnx")
+@pytest.mark.parametrize("make", [tiny_networks.birefnet, tiny_networks.mvanet], ids=["BiRefNet", "MVANet"])
+def test_foreground_has_the_same_probabilities_and_is_sought_twice(
+    tmp_path: Path, photo: np.ndarray, make: Any
+) -> None:
+    """Their authors' prediction: stretched to 1024, ImageNet statistics, the last output's sigmoid, stretched back."""
+    network, graph = make(tmp_path / "model.onnx")
     facade = Foreground(graph, pool=SessionPool())
-    size = photo.shape[:2]
     with torch.no_grad():
-        stretched = np.asarray(Image.fromarray(photo).resize((1024, 1024), Image.Resampling.BILINEAR)) / 255.0
-        pixels = (stretched - [0.485, 0.456, 0.406]) / [0.229, 0.224, 0.225]
-        logits = network(torch.from_numpy(pixels.transpose(2, 0, 1)[None]).float())
-        expected = torch.nn.functional.interpolate(torch.sigmoid(logits), size, mode="bilinear")[0, 0].numpy()
-    np.testing.assert_allclose(facade.probability(photo), expected, atol=1e-4)
-    mask = facade.mask(photo)
-    first = facade.probability(photo) > 0.5
-    assert (mask[first]).all()
-    painted = photo.copy()
-    painted[first] = 255
-    np.testing.assert_array_equal(mask, first | (facade.probability(painted) > 0.5))
-
-
-@ONE_SHAPE
-def test_mvanet_gives_the_same_probabilities(tmp_path: Path, photo: np.ndarray) -> None:
-    """Its authors' prediction: stretched to 1024, ImageNet statistics, the last output's sigmoid, stretched back."""
-    network, graph = tiny_networks.mvanet(tmp_path / "model.onnx")
-    with torch.no_grad():
-        stretched = np.asarray(Image.fromarray(photo).resize((1024, 1024), Image.Resampling.BILINEAR)) / 255.0
-        pixels = (stretched - [0.485, 0.456, 0.406]) / [0.229, 0.224, 0.225]
-        logits = network(torch.from_numpy(pixels.transpose(2, 0, 1)[None]).float())
-        expected = torch.nn.functional.interpolate(logits.sigmoid(), photo.shape[:2], mode="bilinear")[0, 0].numpy()
-    found = Foreground(graph, "mvanet", SessionPool()).probability(photo)
+        seen = torch.sigmoid(network(_imagenet(photo, 1024)))
+        expected = torch.nn.functional.interpolate(seen, photo.shape[:2], mode="bilinear")[0, 0].numpy()
+    found = facade.probability(photo)
     np.testing.assert_allclose(found, expected, atol=1e-4)
     assert np.ptp(expected) > 0.1
+    painted = photo.copy()
+    painted[found > 0.5] = 255
+    np.testing.assert_array_equal(facade.mask(photo), (found > 0.5) | (facade.probability(painted) > 0.5))
 
 
 @ONE_SHAPE

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-import onnx
+import onnx.parser
 import onnxruntime
 import pytest
 
@@ -147,32 +147,15 @@ def test_a_long_run_stops_when_it_is_cancelled(tmp_path: Path) -> None:
 
 def _endless(path: Path) -> Path:
     """A graph that multiplies matrices for minutes."""
-    body = onnx.helper.make_graph(
-        [
-            onnx.helper.make_node("MatMul", ["value_in", "value_in"], ["value_out"]),
-            onnx.helper.make_node("Identity", ["go_in"], ["go_out"]),
-        ],
-        "body",
-        [
-            onnx.helper.make_tensor_value_info("turn", onnx.TensorProto.INT64, []),
-            onnx.helper.make_tensor_value_info("go_in", onnx.TensorProto.BOOL, []),
-            onnx.helper.make_tensor_value_info("value_in", onnx.TensorProto.FLOAT, [64, 64]),
-        ],
-        [
-            onnx.helper.make_tensor_value_info("go_out", onnx.TensorProto.BOOL, []),
-            onnx.helper.make_tensor_value_info("value_out", onnx.TensorProto.FLOAT, [64, 64]),
-        ],
-    )
-    graph = onnx.helper.make_graph(
-        [onnx.helper.make_node("Loop", ["turns", "go", "x"], ["y"], body=body)],
-        "endless",
-        [onnx.helper.make_tensor_value_info("x", onnx.TensorProto.FLOAT, [64, 64])],
-        [onnx.helper.make_tensor_value_info("y", onnx.TensorProto.FLOAT, [64, 64])],
-        [
-            onnx.numpy_helper.from_array(np.array(10**8, np.int64), "turns"),
-            onnx.numpy_helper.from_array(np.array(True), "go"),
-        ],
-    )
-    model = onnx.helper.make_model(graph, opset_imports=[onnx.helper.make_opsetid("", 17)], ir_version=9)
+    model = onnx.parser.parse_model("""
+        <ir_version: 9, opset_import: ["": 17]>
+        endless (float[64, 64] x) => (float[64, 64] y) <int64 turns = {100000000}, bool go = {1}> {
+            y = Loop (turns, go, x) <body = body (int64 turn, bool go_in, float[64, 64] value_in)
+                => (bool go_out, float[64, 64] value_out) {
+                    value_out = MatMul (value_in, value_in)
+                    go_out = Identity (go_in)
+                }>
+        }
+    """)
     onnx.save(model, path)
     return path

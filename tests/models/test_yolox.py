@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diorama_core.models.boxes import Detections, without_doubles, without_parts_of_same
+from diorama_core.models.boxes import overlaps
 from diorama_core.models.runtime import SessionPool
 from diorama_core.models.yolox import Yolox, letterbox
 from diorama_core.perception.foundation.detection import EverydayDetection
@@ -53,13 +53,7 @@ def test_boxes_agree_with_those_of_another_detector(detection: EverydayDetection
     inputs = next(p for p in photos if p.id == "im3d_7").inputs
     mine = [b for b in detection.detect(inputs.photo, (), Progress()) if b.category in ("chair", "table")]
     theirs = np.array([b.box for b in inputs.boxes if b.category in ("chair", "table")])
-    best = [max(_iou(np.array(b.box), t) for t in theirs) for b in mine]
-    assert np.median(best) > 0.8
-
-
-def _iou(a: np.ndarray, b: np.ndarray) -> float:
-    shared = np.prod(np.maximum(np.minimum(a[2:], b[2:]) - np.maximum(a[:2], b[:2]), 0))
-    return float(shared / (np.prod(a[2:] - a[:2]) + np.prod(b[2:] - b[:2]) - shared))
+    assert np.median(overlaps(np.array([b.box for b in mine]), theirs).max(axis=1)) > 0.8
 
 
 def test_the_letterbox_keeps_proportions_and_is_grey_beyond() -> None:
@@ -67,21 +61,3 @@ def test_the_letterbox_keeps_proportions_and_is_grey_beyond() -> None:
     assert scale == pytest.approx(2.08)
     assert tuple(pixels[0, :, 0, 0]) == (30.0, 20.0, 10.0)
     assert tuple(pixels[0, :, -1, -1]) == (114.0, 114.0, 114.0)
-
-
-def _found(*rows: tuple[float, float, float, float, float, int]) -> Detections:
-    table = np.array(rows, dtype=float)
-    return Detections(table[:, :4], table[:, 4], table[:, 5].astype(int))
-
-
-def test_doubles_go_and_the_best_stays() -> None:
-    found = _found((0, 0, 10, 10, 0.6, 0), (0, 0, 10, 9.5, 0.9, 1), (20, 0, 30, 10, 0.5, 0))
-    assert list(without_doubles(found, 0.8, across_classes=True).scores) == [0.9, 0.5]
-    assert len(without_doubles(found, 0.8, across_classes=False)) == 3
-
-
-def test_parts_of_an_object_of_the_same_class_go() -> None:
-    chair_with_part = _found((0, 0, 10, 10, 0.9, 0), (2, 2, 6, 6, 0.5, 0), (2, 2, 6, 6, 0.4, 1))
-    assert list(without_parts_of_same(chair_with_part, 0.8).scores) == [0.9, 0.4]
-    lumped = _found((0, 0, 20, 10, 0.3, 0), (0, 0, 10, 10, 0.9, 0), (10, 0, 20, 10, 0.8, 0))
-    assert sorted(without_parts_of_same(lumped, 0.8).scores) == [0.8, 0.9]

@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import torch
 from tokenizers import Tokenizer, models, pre_tokenizers, processors
-from transformers import (
-    CLIPConfig,
-    CLIPModel,
-    Dinov2Config,
-    Dinov2Model,
-    Owlv2Config,
-    Owlv2ForObjectDetection,
-)
+from transformers import CLIPConfig, CLIPModel, Dinov2Config, Dinov2Model, Owlv2Config, Owlv2ForObjectDetection
 
 from diorama_core.models.manifest import network
 from diorama_core.models.onnx_export import write_graph as export
 from diorama_core.models.store import FileRecord, Installed, ModelStore, sha256_of, write_json
 
 START, END = "<|startoftext|>", "<|endoftext|>"
+MARKS = {"bos_token_id": 30, "eos_token_id": 31, "pad_token_id": 0}
 
 
 def clip_tokenizer(path: Path) -> Path:
@@ -37,31 +31,29 @@ def clip_tokenizer(path: Path) -> Path:
     return path
 
 
-class _Owl(torch.nn.Module):
-    def __init__(self, model: Owlv2ForObjectDetection) -> None:
-        super().__init__()
-        self.model = model
+class Called(torch.nn.Module):
+    """A model that is called as a graph is: with tensors alone."""
 
-    def forward(self, ids: torch.Tensor, mask: torch.Tensor, pixels: torch.Tensor) -> tuple[torch.Tensor, ...]:
-        out = self.model(input_ids=ids, attention_mask=mask, pixel_values=pixels)
-        return out.logits, out.pred_boxes
+    def __init__(self, model: torch.nn.Module, call: Callable[..., object]) -> None:
+        super().__init__()
+        self.model, self.call = model, call
+
+    def forward(self, *given: torch.Tensor) -> object:
+        return self.call(self.model, *given)
+
+
+def _owl(model: Owlv2ForObjectDetection, ids: torch.Tensor, mask: torch.Tensor, pixels: torch.Tensor) -> object:
+    out = model(input_ids=ids, attention_mask=mask, pixel_values=pixels)
+    return out.logits, out.pred_boxes
 
 
 def owlv2(path: Path) -> tuple[Owlv2ForObjectDetection, Path]:
     torch.manual_seed(1)
     text = {"vocab_size": 32, "hidden_size": 16, "intermediate_size": 16, "num_hidden_layers": 1}
     vision = {"hidden_size": 16, "intermediate_size": 16, "num_hidden_layers": 1, "image_size": 960, "patch_size": 32}
+    words = {"num_attention_heads": 2, "max_position_embeddings": 16, **MARKS}
     config = Owlv2Config(
-        text_config={
-            **text,
-            "num_attention_heads": 2,
-            "max_position_embeddings": 16,
-            "pad_token_id": 0,
-            "bos_token_id": 30,
-            "eos_token_id": 31,
-        },
-        vision_config={**vision, "num_attention_heads": 2},
-        projection_dim=16,
+        text_config=text | words, vision_config={**vision, "num_attention_heads": 2}, projection_dim=16
     )
     model = Owlv2ForObjectDetection(config).eval()
     for head in (model.box_head, model.class_head, model.owlv2.vision_model.encoder):
@@ -71,16 +63,11 @@ def owlv2(path: Path) -> tuple[Owlv2ForObjectDetection, Path]:
     arguments = (ids, ids.clone(), torch.zeros(1, 3, 960, 960))
     dynamic = {"input_ids": {0: "q"}, "attention_mask": {0: "q"}, "logits": {2: "q"}}
     names = ["input_ids", "attention_mask", "pixel_values"]
-    return model, export(_Owl(model), arguments, path, names, ["logits", "pred_boxes"], dynamic)
+    return model, export(Called(model, _owl), arguments, path, names, ["logits", "pred_boxes"], dynamic)
 
 
-class _Dino(torch.nn.Module):
-    def __init__(self, model: Dinov2Model) -> None:
-        super().__init__()
-        self.encoder, self.embeddings, self.layernorm = model.encoder, model.embeddings, model.layernorm
-
-    def forward(self, pixels: torch.Tensor) -> torch.Tensor:
-        return self.layernorm(self.encoder(self.embeddings(pixels)).last_hidden_state)
+def _dino(model: Dinov2Model, pixels: torch.Tensor) -> torch.Tensor:
+    return model.layernorm(model.encoder(model.embeddings(pixels)).last_hidden_state)
 
 
 def dinov2(path: Path) -> tuple[Dinov2Model, Path]:
@@ -91,68 +78,37 @@ def dinov2(path: Path) -> tuple[Dinov2Model, Path]:
         torch.nn.init.normal_(parameter, std=0.2)
     dynamic = {"pixel_values": {0: "b"}, "last_hidden_state": {0: "b"}}
     arguments = (torch.zeros(2, 3, 224, 224),)
-    return model, export(_Dino(model), arguments, path, ["pixel_values"], ["last_hidden_state"], dynamic)
+    return model, export(Called(model, _dino), arguments, path, ["pixel_values"], ["last_hidden_state"], dynamic)
 
 
-class _ClipText(torch.nn.Module):
-    def __init__(self, model: CLIPModel) -> None:
-        super().__init__()
-        self.model = model
-
-    def forward(self, text: torch.Tensor) -> torch.Tensor:
-        pooled = self.model.text_model(input_ids=text.long()).pooler_output
-        return self.model.text_projection(pooled)
+def clip_text(model: CLIPModel, text: torch.Tensor) -> torch.Tensor:
+    return model.text_projection(model.text_model(input_ids=text.long()).pooler_output)
 
 
-class _ClipImage(torch.nn.Module):
-    def __init__(self, model: CLIPModel) -> None:
-        super().__init__()
-        self.model = model
-
-    def forward(self, image: torch.Tensor) -> torch.Tensor:
-        return self.model.visual_projection(self.model.vision_model(pixel_values=image).pooler_output)
+def clip_image(model: CLIPModel, image: torch.Tensor) -> torch.Tensor:
+    return model.visual_projection(model.vision_model(pixel_values=image).pooler_output)
 
 
-class _ManyViews(torch.nn.Module):
+def _many_views(model: CLIPModel, views: torch.Tensor) -> torch.Tensor:
     """Views [1, V, 3, 224, 224] of a shape to one vector, as DuoduoCLIP's converted tower."""
-
-    def __init__(self, model: CLIPModel) -> None:
-        super().__init__()
-        self.one = _ClipImage(model)
-
-    def forward(self, views: torch.Tensor) -> torch.Tensor:
-        return self.one(views[0]).mean(dim=0, keepdim=True)
+    return clip_image(model, views[0]).mean(dim=0, keepdim=True)
 
 
 def clip(folder: Path, width: int = 512) -> tuple[CLIPModel, Path, Path, Path]:
     torch.manual_seed(5)
     common = {"hidden_size": 16, "intermediate_size": 16, "num_hidden_layers": 1, "num_attention_heads": 2}
-    config = CLIPConfig(
-        text_config={
-            **common,
-            "vocab_size": 32,
-            "max_position_embeddings": 77,
-            "eos_token_id": 31,
-            "bos_token_id": 30,
-            "pad_token_id": 0,
-        },
-        vision_config={**common, "image_size": 224, "patch_size": 32},
-        projection_dim=width,
-    )
+    words, pictures = {"vocab_size": 32, "max_position_embeddings": 77}, {"image_size": 224, "patch_size": 32}
+    config = CLIPConfig(text_config=common | words | MARKS, vision_config=common | pictures, projection_dim=width)
     model = CLIPModel(config).eval()
-    text = export(
-        _ClipText(model), (torch.zeros(1, 77, dtype=torch.int32),), folder / "text.onnx", ["text"], ["embedding"]
+    graphs = (
+        export(Called(model, call), (example,), folder / f"{name}.onnx", [name], ["embedding"], axes)
+        for name, call, example, axes in (
+            ("text", clip_text, torch.zeros(1, 77, dtype=torch.int32), None),
+            ("image", clip_image, torch.zeros(1, 3, 224, 224), None),
+            ("views", _many_views, torch.zeros(1, 3, 3, 224, 224), {"views": {1: "v"}}),
+        )
     )
-    image = export(_ClipImage(model), (torch.zeros(1, 3, 224, 224),), folder / "image.onnx", ["image"], ["embedding"])
-    views = export(
-        _ManyViews(model),
-        (torch.zeros(1, 3, 3, 224, 224),),
-        folder / "views.onnx",
-        ["views"],
-        ["embedding"],
-        {"views": {1: "v"}},
-    )
-    return model, text, image, views
+    return model, *graphs
 
 
 class _Convolution(torch.nn.Module):
@@ -202,17 +158,15 @@ def lama(path: Path) -> tuple[torch.nn.Module, Path]:
     return network, export(network, arguments, path, ["image", "mask"], ["output"])
 
 
-class _Painter(torch.nn.Module):
+def _paint(_: torch.nn.Module, image: torch.Tensor, mask: torch.Tensor) -> torch.Tensor:
     """Paints the holes grey: what MI-GAN's pipeline would do if it had learnt nothing else."""
-
-    def forward(self, image: torch.Tensor, mask: torch.Tensor) -> torch.Tensor:
-        return torch.where(mask > 127, image, torch.full_like(image, 99))
+    return torch.where(mask > 127, image, torch.full_like(image, 99))
 
 
 def migan(path: Path) -> Path:
     arguments = (torch.zeros(1, 3, 40, 50, dtype=torch.uint8), torch.zeros(1, 1, 40, 50, dtype=torch.uint8))
     dynamic = {"image": {2: "h", 3: "w"}, "mask": {2: "h", 3: "w"}, "result": {2: "h", 3: "w"}}
-    return export(_Painter(), arguments, path, ["image", "mask"], ["result"], dynamic)
+    return export(Called(torch.nn.Identity(), _paint), arguments, path, ["image", "mask"], ["result"], dynamic)
 
 
 def install(store: ModelStore, network_id: str, files: Sequence[Path]) -> None:

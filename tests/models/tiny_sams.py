@@ -19,37 +19,25 @@ from transformers import (
 
 from diorama_core.models.onnx_export import write_graph as export
 from tests.models.small_graphs import HQ_SAM
+from tests.models.tiny_networks import Called
 
 _PyramidModel: TypeAlias = Sam2Model | Sam3TrackerModel
 
 _PROMPTS = {"hidden_size": 32}
-_DECODER = {
-    "hidden_size": 32,
-    "num_hidden_layers": 1,
-    "num_attention_heads": 2,
-    "mlp_dim": 32,
-    "iou_head_hidden_dim": 32,
-}
+_DECODER = _PROMPTS | {"num_hidden_layers": 1, "num_attention_heads": 2, "mlp_dim": 32, "iou_head_hidden_dim": 32}
+PROMPT = {"input_points": {1: "n", 2: "k"}, "input_labels": {1: "n", 2: "k"}, "input_boxes": {1: "n"}}
+"""Inputs of a decoder that say what is wanted, with the axes that may have any length."""
+EXAMPLE = (torch.zeros(1, 1, 1, 2), torch.zeros(1, 1, 1, dtype=torch.long), torch.tensor([[[100.0, 100, 500, 600]]]))
 
 
-class _PyramidEncoder(torch.nn.Module):
-    def __init__(self, model: _PyramidModel) -> None:
-        super().__init__()
-        self.model = model
-
-    def forward(self, pixels: torch.Tensor) -> tuple[torch.Tensor, ...]:
-        return tuple(self.model.get_image_embeddings(pixels))
+def _pyramid_features(model: _PyramidModel, pixels: torch.Tensor) -> tuple[torch.Tensor, ...]:
+    return tuple(model.get_image_embeddings(pixels))
 
 
-class _PyramidDecoder(torch.nn.Module):
-    def __init__(self, model: _PyramidModel) -> None:
-        super().__init__()
-        self.model = model
-
-    def forward(self, e0, e1, e2, points, labels, boxes):
-        out = self.model(image_embeddings=[e0, e1, e2], input_boxes=boxes, multimask_output=True)
-        # Points count for nothing, as none are ever given, but they belong to the signature.
-        return out.iou_scores + 0.0 * points.sum() + 0.0 * labels.sum(), out.pred_masks, out.object_score_logits
+def _pyramid_masks(model: _PyramidModel, e0, e1, e2, points, labels, boxes):
+    out = model(image_embeddings=[e0, e1, e2], input_boxes=boxes, multimask_output=True)
+    # Points count for nothing, as none are ever given, but they belong to the signature.
+    return out.iou_scores + 0.0 * points.sum() + 0.0 * labels.sum(), out.pred_masks, out.object_score_logits
 
 
 def sam2(folder: Path) -> tuple[Sam2Model, Path, Path]:
@@ -105,55 +93,28 @@ def _exported(model: _PyramidModel, side: int, folder: Path) -> tuple[Path, Path
     """Encoder and decoder of a network that takes pictures of `side` pixels and answers features of three sizes."""
     names = ["image_embeddings.0", "image_embeddings.1", "image_embeddings.2"]
     pixels = torch.zeros(1, 3, side, side)
-    encoder = export(_PyramidEncoder(model), (pixels,), folder / "encoder.onnx", ["pixel_values"], names)
+    encoder = export(Called(model, _pyramid_features), (pixels,), folder / "encoder.onnx", ["pixel_values"], names)
     with torch.no_grad():
         features = model.get_image_embeddings(pixels)
-    arguments = (
-        *features,
-        torch.zeros(1, 1, 1, 2),
-        torch.zeros(1, 1, 1, dtype=torch.long),
-        torch.tensor([[[100.0, 100.0, 500.0, 600.0]]]),
-    )
-    decoder = export(
-        _PyramidDecoder(model),
-        arguments,
-        folder / "decoder.onnx",
-        [*names, "input_points", "input_labels", "input_boxes"],
-        ["iou_scores", "pred_masks", "object_score_logits"],
-        {"input_points": {1: "n", 2: "k"}, "input_labels": {1: "n", 2: "k"}, "input_boxes": {1: "n"}},
-    )
-    return encoder, decoder
+    given, outputs = [*names, *PROMPT], ["iou_scores", "pred_masks", "object_score_logits"]
+    decoder = Called(model, _pyramid_masks)
+    return encoder, export(decoder, (*features, *EXAMPLE), folder / "decoder.onnx", given, outputs, PROMPT)
 
 
-class _HqEncoder(torch.nn.Module):
+def _hq_features(model: SamHQModel, picture: torch.Tensor) -> tuple[torch.Tensor, ...]:
     """Normalising and padding inside the graph, as HQ-SAM's exporter writes it."""
-
-    def __init__(self, model: SamHQModel) -> None:
-        super().__init__()
-        self.model = model
-
-    def forward(self, picture: torch.Tensor) -> tuple[torch.Tensor, ...]:
-        mean, std = torch.tensor([123.675, 116.28, 103.53]), torch.tensor([58.395, 57.12, 57.375])
-        pixels = ((picture - mean) / std).permute(2, 0, 1)[None]
-        missing = (0, 1024 - picture.shape[1], 0, 1024 - picture.shape[0])
-        embeddings, inside = self.model.get_image_embeddings(torch.nn.functional.pad(pixels, missing))
-        return embeddings, *inside
+    mean, std = torch.tensor([123.675, 116.28, 103.53]), torch.tensor([58.395, 57.12, 57.375])
+    pixels = ((picture - mean) / std).permute(2, 0, 1)[None]
+    missing = (0, 1024 - picture.shape[1], 0, 1024 - picture.shape[0])
+    embeddings, inside = model.get_image_embeddings(torch.nn.functional.pad(pixels, missing))
+    return embeddings, *inside
 
 
-class _HqDecoder(torch.nn.Module):
-    def __init__(self, model: SamHQModel) -> None:
-        super().__init__()
-        self.model = model
-
-    def forward(self, embeddings, inside, points, labels, mask, has_mask, size):
-        out = self.model(
-            image_embeddings=embeddings,
-            intermediate_embeddings=list(inside),
-            input_boxes=points.reshape(1, 1, 4),
-            multimask_output=True,
-        )
-        nothing = 0.0 * (labels.sum() + mask.sum() + has_mask.sum() + size.sum())
-        return out.pred_masks[:, 0], out.iou_scores[:, 0] + nothing, out.pred_masks[:, 0]
+def _hq_masks(model: SamHQModel, embeddings, inside, points, labels, mask, has_mask, size):
+    seen = {"image_embeddings": embeddings, "intermediate_embeddings": list(inside)}
+    out = model(**seen, input_boxes=points.reshape(1, 1, 4), multimask_output=True)
+    nothing = 0.0 * (labels.sum() + mask.sum() + has_mask.sum() + size.sum())
+    return out.pred_masks[:, 0], out.iou_scores[:, 0] + nothing, out.pred_masks[:, 0]
 
 
 def hq_sam(folder: Path) -> tuple[SamHQModel, Path, Path]:
@@ -177,9 +138,9 @@ def hq_sam(folder: Path) -> tuple[SamHQModel, Path, Path]:
     picture = torch.zeros(768, 1024, 3)
     between = ["image_embeddings", "interm_embeddings.0", "interm_embeddings.1"]
     shape = {"input_image": {0: "height", 1: "width"}}
-    encoder = export(_HqEncoder(model), (picture,), folder / "encoder.onnx", ["input_image"], between, shape)
+    encoder = export(Called(model, _hq_features), (picture,), folder / "encoder.onnx", ["input_image"], between, shape)
     with torch.no_grad():
-        embeddings, *inside = _HqEncoder(model)(picture)
+        embeddings, *inside = _hq_features(model, picture)
     arguments = (
         embeddings,
         torch.stack(inside),
@@ -189,35 +150,19 @@ def hq_sam(folder: Path) -> tuple[SamHQModel, Path, Path]:
         torch.zeros(1),
         torch.tensor([600.0, 800.0]),
     )
-    decoder = export(
-        _HqDecoder(model),
-        arguments,
-        folder / "decoder.onnx",
-        list(HQ_SAM),
-        ["masks", "iou_predictions", "low_res_masks"],
-        {"point_coords": {1: "k"}, "point_labels": {1: "k"}},
-    )
-    return model, encoder, decoder
+    outputs, axes = ["masks", "iou_predictions", "low_res_masks"], {"point_coords": {1: "k"}, "point_labels": {1: "k"}}
+    decoder = Called(model, _hq_masks)
+    return model, encoder, export(decoder, arguments, folder / "decoder.onnx", list(HQ_SAM), outputs, axes)
 
 
-class _SamEncoder(torch.nn.Module):
-    def __init__(self, model: SamModel) -> None:
-        super().__init__()
-        self.model = model
-
-    def forward(self, pixels: torch.Tensor) -> tuple[torch.Tensor, ...]:
-        return self.model.get_image_embeddings(pixels), self.model.get_image_wide_positional_embeddings()
+def _sam_features(model: SamModel, pixels: torch.Tensor) -> tuple[torch.Tensor, ...]:
+    return model.get_image_embeddings(pixels), model.get_image_wide_positional_embeddings()
 
 
-class _SamDecoder(torch.nn.Module):
-    def __init__(self, model: SamModel) -> None:
-        super().__init__()
-        self.model = model
-
-    def forward(self, points, labels, boxes, embeddings, positions):
-        out = self.model(image_embeddings=embeddings, input_boxes=boxes, multimask_output=True)
-        nothing = 0.0 * points.sum() + 0.0 * labels.sum() + 0.0 * positions.sum()
-        return out.iou_scores + nothing, out.pred_masks
+def _sam_masks(model: SamModel, points, labels, boxes, embeddings, positions):
+    out = model(image_embeddings=embeddings, input_boxes=boxes, multimask_output=True)
+    nothing = 0.0 * points.sum() + 0.0 * labels.sum() + 0.0 * positions.sum()
+    return out.iou_scores + nothing, out.pred_masks
 
 
 def slimsam(folder: Path) -> tuple[SamModel, Path, Path]:
@@ -233,26 +178,14 @@ def slimsam(folder: Path) -> tuple[SamModel, Path, Path]:
             "num_pos_feats": 16,
         },
         prompt_encoder_config=_PROMPTS,
-        mask_decoder_config=_DECODER | {},
+        mask_decoder_config=_DECODER,
     )
     model = SamModel(config).eval()
     pixels = torch.zeros(1, 3, 1024, 1024)
     between = ["image_embeddings", "image_positional_embeddings"]
-    encoder = export(_SamEncoder(model), (pixels,), folder / "encoder.onnx", ["pixel_values"], between)
+    encoder = export(Called(model, _sam_features), (pixels,), folder / "encoder.onnx", ["pixel_values"], between)
     with torch.no_grad():
-        features = _SamEncoder(model)(pixels)
-    arguments = (
-        torch.zeros(1, 1, 1, 2),
-        torch.zeros(1, 1, 1, dtype=torch.long),
-        torch.tensor([[[100.0, 100.0, 500.0, 600.0]]]),
-        *features,
-    )
-    decoder = export(
-        _SamDecoder(model),
-        arguments,
-        folder / "decoder.onnx",
-        ["input_points", "input_labels", "input_boxes", *between],
-        ["iou_scores", "pred_masks"],
-        {"input_points": {1: "n", 2: "k"}, "input_labels": {1: "n", 2: "k"}, "input_boxes": {1: "n"}},
-    )
-    return model, encoder, decoder
+        features = _sam_features(model, pixels)
+    given, outputs = [*PROMPT, *between], ["iou_scores", "pred_masks"]
+    decoder = Called(model, _sam_masks)
+    return model, encoder, export(decoder, (*EXAMPLE, *features), folder / "decoder.onnx", given, outputs, PROMPT)

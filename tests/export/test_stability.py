@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from diorama_core.export.gathering import gather
-from diorama_core.export.playground import Playground
-from diorama_core.export.stability import stability
+from diorama_core.export.stability import Playground, stability
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.primitives import PrimitiveLibrary, furnished_room
@@ -38,7 +37,6 @@ def test_after_two_seconds_all_is_where_an_export_simulates_it(room: Scene) -> N
     for drift in report.drifts:
         if drift.free:  # of their centres of mass there, of their boxes here
             assert moved[drift.object_id] == pytest.approx(drift.moved_m, abs=1e-3)
-    assert playground.is_at_rest
 
 
 def test_a_push_moves_one_and_what_is_locked_stays(room: Scene) -> None:

@@ -9,7 +9,7 @@ from tokenizers.pre_tokenizers import Whitespace
 from tokenizers.processors import TemplateProcessing
 
 from diorama_core.errors import UnavailableError
-from diorama_core.models.tokens import clip_tokens, load_tokenizer, tidy
+from diorama_core.models.clip import clip_tokens, load_tokenizer, tidy
 
 WORDS = {"<s>": 1, "</s>": 2, "a": 3, "red": 4, "chair": 5, "?": 6}
 
