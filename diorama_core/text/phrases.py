@@ -244,6 +244,11 @@ def split_places(text: str) -> tuple[str, list[PlacePhrase]]:
     return text[: matches[0].start()].strip(), phrases
 
 
+def listed(text: str) -> list[str]:
+    """The parts of "the desk, the chair and the lamp"."""
+    return [part.strip() for part in re.split(r",\s*(?:and\s+)?|\band\b", text) if part.strip()]
+
+
 def noun_phrase(text: str) -> tuple[NounPhrase | None, str]:
     """Count, attributes and noun of a phrase, and the words that name nothing known (empty where all are known)."""
     left, of, right = text.partition(" of ")

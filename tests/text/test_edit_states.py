@@ -119,7 +119,7 @@ def test_states_are_of_what_can_have_them() -> None:
 def test_other_clauses_are_left_to_others() -> None:
     selector = Selector(living_room(), built_in_library())
     for clause in ("make the sofa red", "move the lamp", "turn the sofa around", "swap the sofa for a leather one"):
-        assert object_edits(selector, clause, lambda s, words: s.objects(words)) is None
+        assert object_edits(selector, clause) is None
     (place,) = places_of_phrases(selector, [PlacePhrase("beside", "the sofa")])
     assert place.targets == ["sofa_1"]
 
