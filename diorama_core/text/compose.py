@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diorama_core.editing.positioning import Positioner
+from diorama_core.editing.positioning import Positioner, new_object
 from diorama_core.editing.relations import OF_ROOM, Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.geometry.openings import OPENING_CATEGORIES
@@ -160,14 +160,9 @@ class _Composer:
             central = stands_between(request, wanted) or is_sat_around(request, wanted)
             middle = np.array([*RoomFrame.of(self.scene).middle, 0.0]) if central else None
             for shape in (chosen,) if chosen is not None else shapes[:SHAPES_TRIED]:
-                number = sum(o.category == shape.category for o in self.scene.objects) + 1
-                blank = Pose.upright(np.zeros(3))
-                item = SceneObject(
-                    object_id, f"{shape.category} {number}", shape.category, shape.id, shape.size_m, blank
-                )
-                wishes = row_relations(
-                    place_seat(self.scene, [r for _, r in relations], request, copy), request, copy, shape
-                )
+                item = new_object(self.scene, shape, request.category)
+                seated = place_seat(self.scene, [r for _, r in relations], request, copy)
+                wishes = row_relations(seated, request, copy, shape)
                 spot = self.positioner.best(self.scene, item, wishes, usual=usual, others=self.relations, near=middle)
                 if spot is None:
                     continue

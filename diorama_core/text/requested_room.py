@@ -166,7 +166,7 @@ def dress(scene: Scene, object_id: str, shape: Shape, appearance: Sequence[str])
     """
     for word in appearance:
         look = look_of(word)
-        if look is not None and look.colour is not None and not has_look(shape, word) and word not in ("light", "dark"):
+        if look is not None and not has_look(shape, word) and word not in ("light", "dark"):
             scene = edits.refinish(edits.recolour(scene, object_id, look.colour), object_id, look.finish)
     return scene
 

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Scene
-from diorama_core.synthesis.grammar import furnish_room
 from diorama_core.text.compose import compose_room
 from diorama_core.text.edit_grammar import edits_of
 from diorama_core.text.edit_plan import Insert, Move, Paint, Place, Remove, Resize, Restyle, Shift, Swap, Turn
@@ -19,18 +18,6 @@ from diorama_core.text.edit_wording import clauses_of
 from diorama_core.text.looks import look_of
 from diorama_core.text.phrases import noun_phrase, split_places
 from diorama_core.text.selecting import Selector
-from tests.text.edited import living_room
-
-
-@pytest.fixture(scope="module")
-def living() -> Scene:
-    return living_room()
-
-
-@pytest.fixture(scope="module")
-def dining() -> Scene:
-    """A table on a rug with five chairs."""
-    return furnish_room(2, "dining", built_in_library(), outline="box", clutter=6)
 
 
 def on(*targets: str) -> list[Place]:
