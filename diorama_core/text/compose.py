@@ -23,7 +23,6 @@ from diorama_core.scene import edits
 from diorama_core.scene.support import check_scene, descendants
 from diorama_core.scene.types import Pose, Scene, SceneObject
 from diorama_core.synthesis import furnish_room
-from diorama_core.text.customs import DECOR
 from diorama_core.text.edit_places import lift_onto
 from diorama_core.text.placed_rows import PlacedRows, place_rows
 from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, read_prompt
@@ -36,7 +35,7 @@ from diorama_core.text.requested_relations import (
     targets_of,
     usual_relations,
 )
-from diorama_core.text.requested_room import dress, empty_room, shapes_for, with_essentials
+from diorama_core.text.requested_room import DECOR, dress, empty_room, shapes_for, with_essentials
 
 TRIES = 4
 """Rooms begun anew, each a little larger, until every wish is met."""
@@ -87,17 +86,13 @@ def compose_room(
         unwished = [o.id for o in scene.objects if {o.category, broad(o.category)} & set(request.excluded)]
         scene = edits.remove(scene, [*unwished, *(c for i in unwished for c in descendants(scene, i))])
         return Composed(scene, ignored, request)
-    best: tuple[float, Composed] | None = None
-    for attempt in range(TRIES):
-        progress.report(attempt / TRIES, "Composing a room from the library")
-        composer = _Composer(request, library, np.random.default_rng((digest, attempt)), attempt)
-        made = composer.compose()
-        if best is None or made[0] < best[0]:
-            best = made
-        if not best[1].notes:
-            break
-    assert best is not None
-    return replace(best[1], notes=(*ignored, *best[1].notes))
+    made: list[tuple[float, Composed]] = []
+    while len(made) < TRIES and all(room.notes for _, room in made):
+        progress.report(len(made) / TRIES, "Composing a room from the library")
+        rng = np.random.default_rng((digest, len(made)))
+        made.append(_Composer(request, library, rng, len(made)).compose())
+    best = min(made, key=lambda attempt: attempt[0])[1]
+    return replace(best, notes=(*ignored, *best.notes))
 
 
 class _Composer:

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
+from diorama_core.editing.habits import usual_relations_of
 from diorama_core.editing.relations import Relation, RelationKind, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import InputError, UnavailableError
@@ -20,10 +21,10 @@ from diorama_core.library.taxonomy import CATEGORIES, category
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.scene.support import check_scene
 from diorama_core.text.compose import compose_room
-from diorama_core.text.customs import ESSENTIALS, stands_in_for, usual_relations_of
 from diorama_core.text.language import LOOKS
 from diorama_core.text.pictures import ImageSettings, picture_of
 from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, read_prompt
+from diorama_core.text.requested_room import ESSENTIALS, stands_in_for
 from diorama_core.text.scene_from_text import finish, scene_from_text
 from tests.perception.language.stub_lmm import StubLmm, answering
 
