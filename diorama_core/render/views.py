@@ -121,7 +121,7 @@ def _shadow(
 ) -> Float32[np.ndarray, "h w"]:
     """How much darker the ground under the shape is than bare ground, 0 to 1; found at half size and smoothed."""
     width, height = max(camera.width // 2, 1), max(camera.height // 2, 1)
-    rays = PinholeView(_resize(camera.camera, width, height)).rays(pixel_centres(width, height))
+    rays = PinholeView(camera.camera.resize(width, height)).rays(pixel_centres(width, height))
     ground = -0.5 * shape.size_m[2]
     fall = np.minimum(rays[..., 5], -1e-6)
     points = rays[..., :3] + rays[..., 3:] * ((ground - rays[..., 2]) / fall)[..., None]
@@ -141,10 +141,6 @@ def _vignette(width: int, height: int) -> Float32[np.ndarray, "h w"]:
     """1 inside, falling to 0 at the picture's border, so that no shadow is cut off."""
     x, y = (np.minimum(np.linspace(0, 1, n), np.linspace(1, 0, n)) for n in (width, height))
     return (np.clip(x / 0.12, 0, 1)[None, :] * np.clip(y / 0.12, 0, 1)[:, None]).astype(np.float32)
-
-
-def _resize(camera: Camera, width: int, height: int) -> Camera:
-    return Camera(camera.intrinsics.resize(width, height), camera.T_world_camera)
 
 
 def _composite(shot: Shot, shadow: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 4"]:

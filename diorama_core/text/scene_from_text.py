@@ -218,12 +218,8 @@ def _stands_free(scene: Scene, eye: Float[np.ndarray, "3"], clearance_m: float) 
     return not any((away < reach).all() for away, reach in local)
 
 
-def _probe(camera: Camera) -> Camera:
-    return Camera(camera.intrinsics.resize(*PROBE_PX), camera.T_world_camera)
-
-
 def _score(caster: MeshCaster, camera: Camera, worth: Float[np.ndarray, " n"]) -> float:
-    seen = caster.buffers(_probe(camera))
+    seen = caster.buffers(camera.resize(*PROBE_PX))
     count = len(worth)
     pixels = np.bincount(seen.instance[seen.instance >= 0].ravel(), minlength=count)[:count]
     rim = np.concatenate([seen.instance[0], seen.instance[-1], seen.instance[:, 0], seen.instance[:, -1]])
