@@ -13,7 +13,7 @@ from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from diorama_core.text.edit_places import lift_onto, shift
 from diorama_core.text.edit_plan import Move, Place, Remove, Resize, Shift, Turn
-from tests.text.edited import assert_sound, done
+from tests.text.edited import apart_m, assert_sound, done
 
 
 def test_moved_objects_take_their_load_along(living: Scene) -> None:
@@ -45,15 +45,9 @@ def test_what_is_moved_by_a_length_goes_that_far_or_says_that_it_stepped_aside(l
 
 
 def test_things_go_nearer_to_others_and_what_hangs_up_and_down(living: Scene) -> None:
-    positioner = Positioner(built_in_library())
-
-    def apart(scene: Scene) -> float:
-        return float(
-            np.linalg.norm((scene.object("piano_1").pose.position - scene.object("plant_1").pose.position)[:2])
-        )
-
+    positioner, pair = Positioner(built_in_library()), ("piano_1", "plant_1")
     away = shift(positioner, living, Shift(objects=["plant_1"], toward="piano_1", toward_m=-0.1))
-    assert away.notes or apart(away.scene) == pytest.approx(apart(living) + 0.1, abs=1e-6)
+    assert away.notes or apart_m(away.scene, *pair) == pytest.approx(apart_m(living, *pair) + 0.1, abs=1e-6)
     assert away.lines == ("move plant 1 0.1 m away from piano 1",)
     raised = shift(positioner, living, Shift(objects=["picture_1"], up_m=0.05))
     rise = raised.scene.object("picture_1").pose.position - living.object("picture_1").pose.position
