@@ -108,10 +108,11 @@ class _Joining:
         claimed = claims(shared)
         joined = list(tracks)
         for box in range(len(alone)):
-            if (k := claimed.get(box)) is None:
-                joined.append(self._fit(((number, box),)))
-            else:
+            if box in claimed:
+                k = claimed[box]
                 joined[k] = self._fit(tuple(sorted((*tracks[k].boxes, (number, box)))))
+            else:
+                joined.append(self._fit(((number, box),)))
         return joined
 
     def without_photo(self, tracks: list[Track], number: int) -> list[Track]:
