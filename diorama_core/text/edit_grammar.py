@@ -43,9 +43,9 @@ from diorama_core.text.phrases import (
     APPEARANCES,
     NUMBERS,
     PlacePhrase,
-    listed,
     noun_phrase,
     relation_pattern,
+    split_list,
     split_places,
 )
 from diorama_core.text.selecting import Selector
@@ -142,7 +142,7 @@ def _each_alone(
     read: Callable[[Selector, str, str], Edit], selector: Selector, clause: str, rest: str
 ) -> tuple[Edit, ...]:
     """ "the desk white and the chair black" is two edits, "the desk and the chair black" is one of two objects."""
-    parts = listed(rest)
+    parts = split_list(rest)
     if len(parts) > 1:
         with suppress(EditRefused):  # not all of them are whole by themselves
             return tuple(read(selector, clause, part) for part in parts)
@@ -350,7 +350,7 @@ def _factor(text: str, larger: bool) -> float:
 
 def _inserts(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...]:
     """Each of "a lamp, two plants and a rug", with the phrases of place that follow it."""
-    parts = [rest] if re.search(r"\bbetween\b", rest) else listed(rest)
+    parts = [rest] if re.search(r"\bbetween\b", rest) else split_list(rest)
     at = None if not parts else relation_pattern().search(parts[-1])
     if at is not None and not re.search(r"\b(?:it|them|each|one)\b", parts[-1][at.start() :]):
         parts = [p if split_places(p)[1] or " to " in p else f"{p} {parts[-1][at.start() :]}" for p in parts]

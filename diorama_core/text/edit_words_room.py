@@ -13,7 +13,7 @@ from diorama_core.text.edit_lengths import length_in
 from diorama_core.text.edit_plan import Edit, InsertOpening, Light, Paint, RoomLength, Side
 from diorama_core.text.edit_room import covering_in_words, wall_on
 from diorama_core.text.edit_words_objects import side_in
-from diorama_core.text.phrases import listed
+from diorama_core.text.phrases import split_list
 from diorama_core.text.selecting import Selector
 
 _PARTS: dict[PlaneRole, Literal["walls", "floor", "ceiling"]] = {
@@ -69,7 +69,7 @@ def room_edits(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
 def _surfaces(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     asked = _ASKED.match(clause)
     rest = clause[asked.end() :] if asked is not None else clause
-    parts = listed(rest)
+    parts = split_list(rest)
     if len(parts) > 1 and all(_PART.search(p) for p in parts):
         surfaces = [_surface(selector, p) for p in parts]
         return tuple(e for e in surfaces if e is not None) if None not in surfaces else None

@@ -119,7 +119,7 @@ def split_places(text: str) -> tuple[str, list[PlacePhrase]]:
     return text[: matches[0].start()].strip(), phrases
 
 
-def listed(text: str) -> list[str]:
+def split_list(text: str) -> list[str]:
     """The parts of "the desk, the chair and the lamp"."""
     return [part.strip() for part in re.split(r",\s*(?:and\s+)?|\band\b", text) if part.strip()]
 
