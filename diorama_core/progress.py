@@ -84,6 +84,10 @@ class Progress:
             end=self._overall_fraction(end),
         )
 
+    def parts(self, count: int) -> list[Progress]:
+        """The progress of each of so many sub-tasks that take equally long."""
+        return [self.part(k / count, (k + 1) / count) for k in range(count)]
+
     def _overall_fraction(self, fraction: float) -> float:
         """Fraction of the whole job; a part ends exactly where the next one begins."""
         return self.start * (1.0 - fraction) + self.end * fraction

@@ -31,7 +31,7 @@ TABLES = {
     "diorama_core/export/physics.py": "words of materials",
     "diorama_core/importing/roomplan_parts.py": "RoomPlan's words for attributes",
     "diorama_core/perception/foundation/detection.py": "a detector's words for what a person would call otherwise",
-    "diorama_core/text/customs.py": "recipes of rooms",
+    "diorama_core/text/requested_room.py": "recipes of rooms",
     "diorama_core/text/requested_relations.py": "the order in which furniture is placed",
 }
 """Modules that may have tables, and why."""

@@ -31,7 +31,7 @@ from diorama_core.perception.inputs import read_inputs
 from diorama_core.project.build import build_project
 from diorama_core.project.storage import Project
 from diorama_core.render.picture import looking_along
-from diorama_core.render.raycast import MeshCaster, OrthographicView, render_buffers
+from diorama_core.render.raycast import MeshCaster, OrthographicView
 from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Pose, Scene, SceneObject, yaw_rotation
 from diorama_core.synthesis.photograph import photograph
 
@@ -269,7 +269,7 @@ def visible_boxes(scene: Scene, library: ShapeLibrary) -> list[dict]:
     """Boxes around what is seen of each thing; things mostly hidden or tiny are left out, as a person would."""
     assert scene.camera is not None
     posed = [(library.mesh(o.shape_id), o.pose.matrix) for o in scene.objects]
-    together = render_buffers(posed, scene.camera).instance
+    together = MeshCaster(posed).buffers(scene.camera).instance
     boxes = []
     for index, (item, obj) in enumerate(zip(ITEMS, scene.objects, strict=True)):
         seen = together == index

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Bool, Float
 
+from diorama_core.editing.room_frame import UPRIGHT
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.casting import cast_plane
 from diorama_core.geometry.planes import is_in_plane_polygon
@@ -213,10 +214,6 @@ def room_before(scene: Scene, plane_id: str) -> Clearance | None:
     if not np.isfinite(distance):
         return None
     return Clearance("front", distance, middle, middle + distance * plane.normal, other)
-
-
-UPRIGHT = 0.3
-"""A wall's normal rises by less."""
 
 
 def clear_of_walls(scene: Scene, item: SceneObject) -> Pose:

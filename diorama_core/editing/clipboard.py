@@ -96,8 +96,10 @@ def free_offset(scene: Scene, clip: Clip) -> Float[np.ndarray, "3"]:
     heads = [o for o in clip.objects if carried.get(o.id) not in pasted]
     low = np.min([o.corners_world.min(axis=0) for o in heads], axis=0)
     high = np.max([o.corners_world.max(axis=0) for o in heads], axis=0)
-    allowed = _extent_below(scene, heads, carried)
-    along = _wall_direction(scene, heads, carried)
+    parents = {carried.get(o.id) for o in heads}
+    parent = parents.pop() if len(parents) == 1 else None
+    allowed = _extent_below(scene, heads, parent)
+    along = _wall_direction(scene, parent)
     if along is None:
         step = np.append((high - low)[:2] + GAP_M, 0.0)
         ways = [np.append(way, 0.0) * step for way in WAYS]
@@ -119,10 +121,8 @@ def free_offset(scene: Scene, clip: Clip) -> Float[np.ndarray, "3"]:
     return next((offset for offset in offsets if fits(offset)), np.array(BESIDE_M))
 
 
-def _wall_direction(scene: Scene, heads: list[SceneObject], carried: dict[str, str]) -> Float[np.ndarray, "3"] | None:
+def _wall_direction(scene: Scene, parent: str | None) -> Float[np.ndarray, "3"] | None:
     """The level direction of the wall that all copies hang on; None where they do not hang on one."""
-    parents = {carried.get(o.id) for o in heads}
-    parent = parents.pop() if len(parents) == 1 else None
     if parent is None or not scene.has_plane(parent) or scene.plane(parent).role != "wall":
         return None
     direction = np.cross((0.0, 0.0, 1.0), scene.plane(parent).normal)
@@ -130,11 +130,9 @@ def _wall_direction(scene: Scene, heads: list[SceneObject], carried: dict[str, s
 
 
 def _extent_below(
-    scene: Scene, heads: list[SceneObject], carried: dict[str, str]
+    scene: Scene, heads: list[SceneObject], parent: str | None
 ) -> tuple[Float[np.ndarray, "2"], Float[np.ndarray, "2"]] | None:
     """The extent (m) of what copies may stand on: their common supporter, or the floor; None where there is neither."""
-    parents = {carried.get(o.id) for o in heads}
-    parent = parents.pop() if len(parents) == 1 else None
     if parent is not None and scene.has_object(parent):
         corners = scene.object(parent).corners_world
     elif (floor := room_around(scene, heads[0].pose.position).architecture.floor) is not None:

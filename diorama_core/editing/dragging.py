@@ -22,12 +22,14 @@ from diorama_core.editing.placing import (
     places_of,
     to_wall,
 )
+from diorama_core.editing.stretching import new_poses
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.rooms import part_of_home, rooms_of_objects
 from diorama_core.layout.feasible.local import DragSolver
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import resolve
 from diorama_core.scene import edits
+from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Pose, Scene, SceneObject, yaw_rotation
 
@@ -124,8 +126,7 @@ class Slide:
             scene = self._slide(pose, place)
         else:
             scene = self._move(pose, place)
-        start = {o.id: o for o in self.scene.objects}
-        return scene, {o.id: o.pose for o in scene.objects if o is not start.get(o.id)}
+        return scene, new_poses(self.scene, scene)
 
     def _slide(self, pose: Pose, place: SupportTarget | None) -> Scene:
         """The scene with the object as near to a pose as it can be; of a home only the room that it comes to counts."""
@@ -154,9 +155,8 @@ class Slide:
 
     def _target(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, SupportTarget | None]:
         edge = self.scene.support_of(self.item.id)
-        hung = edge is not None and bool(self.places) and not self.places[0].upward
-        if hung:
-            return self._slide_on_walls(eye, direction)
+        if edge is not None and self.places and not self.places[0].upward:
+            return self._slide_on_walls(plane_surface(self.scene.plane(edge.parent)), eye, direction)
         return self._standing(eye, direction)
 
     def _standing(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, SupportTarget | None]:
@@ -183,8 +183,10 @@ class Slide:
         distance = (self.grabbed[2] - eye[2]) / direction[2]
         return eye + distance * direction if 0 < distance < 50.0 else None
 
-    def _slide_on_walls(self, eye: np.ndarray, direction: np.ndarray) -> tuple[Pose, SupportTarget | None]:
-        item, start = self.item, self._start_surface()
+    def _slide_on_walls(
+        self, start: RestingSurface, eye: np.ndarray, direction: np.ndarray
+    ) -> tuple[Pose, SupportTarget | None]:
+        item = self.item
         lift = float(start.normal @ self.grabbed) - start.level
         hits = hits_along(eye, direction, self.places, lift_m=lift) or hits_along(
             eye, direction, self.places, lift_m=lift, slack_m=1.5
@@ -192,31 +194,20 @@ class Slide:
         if not hits:
             return item.pose, None
         hit = hits[0]
-        turn = _turn(start.normal, hit.place.surface.normal)
-        offset = turn @ (item.pose.position - self.grabbed)
-        point = hit.point + lift * hit.place.surface.normal
-        position = point + offset
-        outward = hit.place.surface
-        position = _clamp_to(outward, position, item)
-        pose = Pose(turn @ item.pose.R_world_object, position, item.pose.scale)
+        surface = hit.place.surface
+        turn = _turn(start.normal, surface.normal)
+        position = hit.point + lift * surface.normal + turn @ (item.pose.position - self.grabbed)
+        pose = Pose(turn @ item.pose.R_world_object, _clamp_to(surface, position), item.pose.scale)
         wall = self.scene.plane(hit.place.parent) if self.scene.has_plane(hit.place.parent) else None
         return (pose if wall is None else clamp_to_wall(replace(item, pose=pose), wall)), hit.place
-
-    def _start_surface(self) -> RestingSurface:
-        edge = self.scene.support_of(self.item.id)
-        assert edge is not None
-        return plane_surface(self.scene.plane(edge.parent))
 
     def _snap(self, pose: Pose, place: SupportTarget | None) -> Pose:
         if place is not None and not place.upward and abs(float(place.surface.normal[2])) < 0.7:
             n = place.surface.normal
             across = np.array([-n[1], n[0], 0.0])
-            shift = (_grid(float(across @ pose.position)) - float(across @ pose.position)) * across
-            shift = shift + np.array([0.0, 0.0, _grid(float(pose.position[2])) - float(pose.position[2])])
-            return pose.move(shift)
-        snapped = pose.move(
-            (_grid(float(pose.position[0])) - pose.position[0], _grid(float(pose.position[1])) - pose.position[1], 0.0)
-        )
+            return pose.move(_to_grid_m(across, pose) * across + _to_grid_m(UP_WORLD, pose) * UP_WORLD)
+        x, y = np.eye(3)[:2]
+        snapped = pose.move(_to_grid_m(x, pose) * x + _to_grid_m(y, pose) * y)
         walls = [plane_surface(p) for p in self.scene.architecture.by_role("wall")]
         return to_wall(replace(self.item, pose=snapped), walls)
 
@@ -234,8 +225,10 @@ def snap_pose(start: Pose, pose: Pose) -> Pose:
     return pose
 
 
-def _grid(value: float) -> float:
-    return float(round(value / GRID_M) * GRID_M)
+def _to_grid_m(axis: Float[np.ndarray, "3"], pose: Pose) -> float:
+    """How far along an axis the next place on the grid is."""
+    at = float(axis @ pose.position)
+    return round(at / GRID_M) * GRID_M - at
 
 
 def _turn(before: np.ndarray, after: np.ndarray) -> np.ndarray:
@@ -245,7 +238,7 @@ def _turn(before: np.ndarray, after: np.ndarray) -> np.ndarray:
     return yaw_rotation(float(np.arctan2(after[1], after[0]) - np.arctan2(before[1], before[0])))
 
 
-def _clamp_to(surface: RestingSurface, position: np.ndarray, item: SceneObject) -> np.ndarray:
+def _clamp_to(surface: RestingSurface, position: np.ndarray) -> np.ndarray:
     """The centre moved so that the object's middle stays over the surface."""
     foot = position - (float(surface.normal @ position) - surface.level) * surface.normal
     return position + nearest_point(surface, foot) - foot

@@ -20,10 +20,14 @@ _UNIT = 0.5 * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 
 def footprints(size_m: Float[np.ndarray, "_"], places: Points, yaws_rad: Float[np.ndarray, "n"]) -> Quads:
     """Outlines of a box at places and headings, counter-clockwise; `size_m` begins with its depth and width."""
-    local = _UNIT * np.asarray(size_m)[:2]
+    return put_at(_UNIT * np.asarray(size_m)[:2], places, yaws_rad)
+
+
+def put_at(outline: Outline, places: Points, yaws_rad: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n k 2"]:
+    """An outline around the origin, turned and put to places."""
     c, s = np.cos(yaws_rad), np.sin(yaws_rad)
     turns = np.stack([np.stack([c, s], axis=-1), np.stack([-s, c], axis=-1)], axis=-2)
-    return local @ turns + places[:, None]
+    return outline @ turns + places[:, None]
 
 
 def footprint_of(item: SceneObject) -> Quad:
@@ -63,6 +67,11 @@ def gaps(quads: Quads, other: Outline) -> Float[np.ndarray, "n"]:
         _to_edges(np.broadcast_to(other, (len(quads), *other.shape)), quads),
     )
     return np.where(overlapping(quads, other, 0.0), 0.0, near)
+
+
+def gap_between(a: SceneObject, b: SceneObject) -> float:
+    """Free distance between two objects, seen from above."""
+    return float(gaps(footprint_of(a)[None], footprint_of(b))[0])
 
 
 def lie_within(quads: Quads, outline: Outline, slack_m: float = 0.002) -> Bool[np.ndarray, "n"]:

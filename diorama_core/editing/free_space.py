@@ -8,10 +8,11 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float
 
+from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import resolve
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import Scene, yaw_rotation
 
 CELL_M = 0.05
 MAX_CELLS = 800
@@ -100,10 +101,7 @@ def free_space(scene: Scene) -> FreeSpace:
     level = float(floor.polygon[:, 2].mean())
     ceilings = [float(p.polygon[:, 2].max()) for p in scene.architecture.by_role("ceiling")]
     outline = floor.polygon[:, :2]
-    edges = np.roll(outline, -1, axis=0) - outline
-    along = edges[int(np.linalg.norm(edges, axis=1).argmax())]
-    angle = float(np.arctan2(along[1], along[0]))
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    turn = yaw_rotation(RoomFrame.of(scene).axis_rad)[:2, :2]
     flat = outline @ turn
     origin, extent = flat.min(axis=0), np.ptp(flat, axis=0)
     cell = max(CELL_M, float(extent.max()) / MAX_CELLS)

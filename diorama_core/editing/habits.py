@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import cast
 
-from diorama_core.editing.relations import Relation
+from diorama_core.editing.relations import Relation, RelationKind
 from diorama_core.library.taxonomy import broad, category, having, often_carried, usual_carriers
 from diorama_core.scene.types import Scene, SceneObject
 
@@ -25,6 +26,14 @@ def host_cost(item: SceneObject, host: SceneObject) -> float:
     if host.category in usual:
         return 0.6 - 0.6 * often_carried(item.category, host.category) / often_carried(item.category, usual[0])
     return 0.6 + (0.4 if host.size_m[2] > 1.3 else 0.0)
+
+
+def usual_relations_of(kind: str) -> tuple[tuple[RelationKind, tuple[str, ...]], ...]:
+    """How objects of a category stand where nobody says: relations in the order of their weight, and their targets."""
+    row = category(kind)
+    on = usual_carriers(kind) if row.mount == "surface" else ()
+    stands = ((cast(RelationKind, relation), targets) for relation, targets in row.usual_relations or ())
+    return (*((("on", on),) if on else ()), *stands)
 
 
 def tuck_hosts(item: SceneObject) -> tuple[str, ...]:

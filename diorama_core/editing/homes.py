@@ -17,7 +17,7 @@ from diorama_core.multiview.one_scene import move_to_room
 from diorama_core.project.storage import Project
 from diorama_core.scene import edits
 from diorama_core.scene.room_edits import floor_height
-from diorama_core.scene.types import Architecture, HomeRoom, Plane, Scene, Support, yaw_rotation
+from diorama_core.scene.types import Architecture, HomeRoom, Plane, Scene, Support, rigid, yaw_rotation
 
 USUAL_WALL_M = 0.12
 """Thickness of a wall between two rooms where nobody says another: brick and plaster."""
@@ -133,11 +133,8 @@ def place_at_door(
     """
     wall, there = _wall_of_door(home, door), _wall_of_door(other, other_door)
     yaw = np.arctan2(*-wall.normal[[1, 0]]) - np.arctan2(*there.normal[[1, 0]])
-    T = np.eye(4)
-    T[:3, :3] = yaw_rotation(float(yaw))
-    target = _foot(home, door, wall) - wall_m * wall.normal
-    T[:3, 3] = target - T[:3, :3] @ _foot(other, other_door, there)
-    return T
+    R = yaw_rotation(float(yaw))
+    return rigid(R, _foot(home, door, wall) - wall_m * wall.normal - R @ _foot(other, other_door, there))
 
 
 def join_project(
@@ -360,14 +357,18 @@ def _foot(scene: Scene, door: str, wall: Plane) -> Float[np.ndarray, "3"]:
     """The middle of a door on its wall's face, at the height of its room's floor."""
     position = scene.object(door).pose.position
     on_face = position - (float(wall.normal @ position) - wall.offset) * wall.normal
+    room = _room_of(scene, door)
+    return np.append(on_face[:2], floor_height(scene) if room is None else float(scene.plane(room.floor).centre[2]))
+
+
+def _room_of(scene: Scene, door: str) -> HomeRoom | None:
     room = rooms_of_objects(scene).get(door)
-    floor = next((scene.plane(r.floor) for r in scene.rooms if r.id == room), None)
-    return np.append(on_face[:2], floor_height(scene) if floor is None else float(floor.centre[2]))
+    return next((r for r in scene.rooms if r.id == room), None)
 
 
 def _storey(scene: Scene, door: str) -> int:
-    room = rooms_of_objects(scene).get(door)
-    return next((r.storey for r in scene.rooms if r.id == room), 0)
+    room = _room_of(scene, door)
+    return 0 if room is None else room.storey
 
 
 def _renumber(rooms: tuple[HomeRoom, ...]) -> tuple[HomeRoom, ...]:

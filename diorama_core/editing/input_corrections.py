@@ -32,20 +32,13 @@ def with_correction(
         mask: its outline, where a person drew it. A given outline stays with an unchanged box and goes with a new one.
     """
     index = None if before is None else box_index(inputs, before)
-    old = None if index is None else inputs.boxes[index]
     if index is None and now.box in (b.box for b in inputs.boxes):
         index = box_index(inputs, now.box)
-        old = inputs.boxes[index] if index is not None else None
-    boxes = list(inputs.boxes)
     if index is None:
-        boxes.append(now)
+        changed = replace(inputs, boxes=(*inputs.boxes, now))
     else:
-        boxes[index] = now
-    changed = replace(inputs, boxes=tuple(boxes))
-    if mask is None and old is not None and old.box == now.box:
-        renamed = tuple((i, now if b.box == now.box else b) for i, b in inputs.instance_boxes)
-        return replace(changed, instance_boxes=renamed)
-    changed = _without_outline(changed, old)
+        changed = with_box_at(inputs, index, now)
+        changed = changed if mask is None else _without_outline(changed, inputs.boxes[index])
     return changed if mask is None else _with_outline(changed, now, mask)
 
 
@@ -70,13 +63,13 @@ def with_boxes_added(inputs: Inputs, boxes: Sequence[LabelledBox]) -> Inputs:
     return replace(inputs, boxes=(*inputs.boxes, *new))
 
 
-def same_object(boxes: Sequence[LabelledBox], box: Box) -> int | None:
+def same_object(boxes: Sequence[LabelledBox], box: Box, least_iou: float = SAME_OBJECT_IOU) -> int | None:
     """Which of the boxes is of the same object as another one, as far as overlap tells; None for none."""
     if not boxes:
         return None
     overlaps = box_iou(np.asarray([b.box for b in boxes]), np.asarray([box])).ravel()
     best = int(np.argmax(overlaps))
-    return best if overlaps[best] >= SAME_OBJECT_IOU else None
+    return best if overlaps[best] >= least_iou else None
 
 
 def label_box(box: Box, label: str) -> LabelledBox:
@@ -113,13 +106,11 @@ def find_outline(inputs: Inputs, box: Box) -> Bool[np.ndarray, "h w"] | None:
 
 def box_index(inputs: Inputs, box: Box) -> int | None:
     """Which of the given boxes this is; None when it is none of them."""
-    overlaps = [float(box_iou(np.asarray([b.box]), np.asarray([box])).max()) for b in inputs.boxes]
-    best = int(np.argmax(overlaps)) if overlaps else 0
-    return best if overlaps and overlaps[best] >= SAME_BOX_IOU else None
+    return same_object(inputs.boxes, box, SAME_BOX_IOU)
 
 
-def _without_outline(inputs: Inputs, box: LabelledBox | None) -> Inputs:
-    gone = {i for i, b in inputs.instance_boxes if box is not None and b.box == box.box}
+def _without_outline(inputs: Inputs, box: LabelledBox) -> Inputs:
+    gone = {i for i, b in inputs.instance_boxes if b.box == box.box}
     if not gone or inputs.instances is None:
         return inputs
     instances = np.where(np.isin(inputs.instances, list(gone)), 0, inputs.instances).astype(np.int32)

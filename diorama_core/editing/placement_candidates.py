@@ -9,11 +9,11 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from diorama_core.editing.collisions import WALKED_ON_M
-from diorama_core.editing.footprints import footprint_of, gaps, lie_within, overlapping
+from diorama_core.editing.footprints import footprint_of, gap_between, lie_within, overlapping
 from diorama_core.editing.habits import carries, host_cost, stands, tuck_hosts
 from diorama_core.editing.placing import places_of
 from diorama_core.editing.relations import Relation, Stances
-from diorama_core.editing.room_frame import RoomFrame
+from diorama_core.editing.room_frame import RoomFrame, WallLine
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category, having
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support, yaw_rotation
@@ -69,18 +69,20 @@ def candidates_for(
         return [_wall_candidates(scene, item, above, frame)]
     if mount == "ceiling":
         return [_ceiling_candidates(scene, item, above, frame)]
-    floor = [_floor_candidates(scene, item, relations, frame)]
+    floor = _floor_candidates(scene, item, relations, frame)
     if mount == "surface":
         named = [t for r in relations for t in r.targets if scene.has_object(t)]
         carriers = [o.id for o in scene.objects if carries(o) and o.id not in named]
         targets = [t for t in named if carries(scene.object(t))]
         beside_named = [
             c for c in carriers
-            if any(_apart(scene.object(c), scene.object(t)) < WITHIN_REACH_M for t in named)
+            if any(gap_between(scene.object(c), scene.object(t)) < WITHIN_REACH_M for t in named)
         ]  # fmt: skip
         on_objects = _object_candidates(scene, item, beside_named if named else carriers + targets, library)
-        return [*on_objects, *_less_likely(floor)] if named else on_objects or floor
-    return floor
+        if not named:
+            return on_objects or [floor]
+        return [*on_objects, replace(floor, extra=floor.extra + ON_FLOOR_COST)]
+    return [floor]
 
 
 def _floor_candidates(scene: Scene, item: SceneObject, relations: Sequence[Relation], frame: RoomFrame) -> Candidates:
@@ -112,10 +114,8 @@ def _floor_stances(scene: Scene, item: SceneObject, relations: Sequence[Relation
 
     depth, width = float(item.size_m[0]), float(item.size_m[1])
     for wall in frame.walls:
-        low, high = width / 2 + WALL_GAP_M, wall.length_m - width / 2 - WALL_GAP_M
-        if high >= low:
-            t = np.unique(np.concatenate([np.arange(low, high, STEP_M), [high, 0.5 * wall.length_m]]))
-            t = t[(t >= low - 1e-9) & (t <= high + 1e-9)]
+        t = _steps_along(wall, width, WALL_GAP_M)
+        if len(t):
             add(wall.start + t[:, None] * wall.direction + wall.inward * (depth / 2 + WALL_GAP_M), wall.yaw_rad)
     targets = [scene.object(t) for r in relations for t in r.targets if scene.has_object(t)]
     turns = frame.axis_rad + np.arange(4) * np.pi / 2
@@ -127,14 +127,28 @@ def _floor_stances(scene: Scene, item: SceneObject, relations: Sequence[Relation
         for yaw in turns:
             add(middle, float(yaw))
     low, high = frame.outline.min(axis=0), frame.outline.max(axis=0)
-    xs, ys = np.meshgrid(*(np.arange(a + 0.1, b, GRID_M) for a, b in zip(low, high, strict=True)))
-    grid = np.column_stack([xs.ravel(), ys.ravel()])
+    grid = _grid([np.arange(a + 0.1, b, GRID_M) for a, b in zip(low, high, strict=True)])
     for yaw in turns:
         add(np.concatenate([grid, frame.middle[None]]), float(yaw))
     for target in targets[:3]:
         toward = target.pose.position[:2] - grid
         add(grid, np.arctan2(toward[:, 1], toward[:, 0]))
     return Stances(item.size_m, np.concatenate(places), np.concatenate(yaws))
+
+
+def _steps_along(wall: WallLine, width_m: float, gap_m: float, more: Sequence[float] = ()) -> Float[np.ndarray, "n"]:
+    """Places along a wall for something so wide that keeps a gap to its ends: every step, the middle, and some more."""
+    low, high = width_m / 2 + gap_m, wall.length_m - width_m / 2 - gap_m
+    if high < low:
+        return np.zeros(0)
+    steps = np.unique(np.concatenate([np.arange(low, high, STEP_M), [high, 0.5 * wall.length_m]]))
+    steps = np.concatenate([steps, more])
+    return steps[(steps >= low - 1e-9) & (steps <= high + 1e-9)]
+
+
+def _grid(steps: Sequence[Float[np.ndarray, "_"]]) -> Float[np.ndarray, "n 2"]:
+    """All points with one of the first and one of the second coordinates."""
+    return np.stack(np.meshgrid(*steps), axis=-1).reshape(-1, 2)
 
 
 def _places_around(target: SceneObject, item: SceneObject) -> list[tuple[Float[np.ndarray, "n 2"], float]]:
@@ -199,22 +213,21 @@ def _object_candidates(
         local = (outline - host.pose.position[:2]) @ R
         low, high = local.min(axis=0), local.max(axis=0)
         steps = [np.linspace(a, b, max(3, min(13, int((b - a) / 0.05)))) for a, b in zip(low, high, strict=True)]
-        xs, ys = np.meshgrid(*steps)
-        flat = np.column_stack([xs.ravel(), ys.ravel()])
+        flat = _grid(steps)
         yaws = [0.0, np.pi / 2] if item.size_m[1] > np.ptp(local[:, 1]) or item.category in having("rug") else [0.0]
-        places = np.concatenate([flat] * len(yaws)) @ R.T + host.pose.position[:2]
         turns = np.repeat(yaws, len(flat)) + host.pose.yaw_rad
-        stances = Stances(item.size_m, places, turns)
+        flat = np.concatenate([flat] * len(yaws))
+        stances = Stances(item.size_m, flat @ R.T + host.pose.position[:2], turns)
         quads = stances.quads
-        foot = _smaller(stances, 1.0 - OVERHANG if usual == "surface" or item.category == "plant" else 1.0).quads
-        usable = np.array(lie_within(foot, outline, 0.01))
-        middle = 0.5 * (low + high)
-        off = np.abs(np.concatenate([flat] * len(yaws)) - middle) / np.maximum((high - low) / 2, 0.05)
+        share = 1.0 - OVERHANG if usual == "surface" or item.category == "plant" else 1.0
+        usable = np.array(lie_within(replace(stances, size_m=stances.size_m * share).quads, outline, 0.01))
+        off = np.abs(flat - 0.5 * (low + high)) / np.maximum((high - low) / 2, 0.05)
         extra = 0.15 * off.sum(axis=1) + 0.4 * ~np.array(lie_within(quads, outline, 0.01))
+        deep = max(float(high[0] - low[0]), 0.05)
         if item.category in having("along_the_back"):
-            extra += 0.3 * (np.concatenate([flat] * len(yaws))[:, 0] - low[0]) / max(float(high[0] - low[0]), 0.05)
+            extra += 0.3 * (flat[:, 0] - low[0]) / deep
         if item.category in having("near_the_edge"):
-            extra += 0.3 * (high[0] - np.concatenate([flat] * len(yaws))[:, 0]) / max(float(high[0] - low[0]), 0.05)
+            extra += 0.3 * (high[0] - flat[:, 0]) / deep
         for child in scene.children_of(place.parent):
             other = scene.object(child)
             if abs(float(other.corners_world[:, 2].min()) - place.surface.level) < 0.08:
@@ -222,8 +235,8 @@ def _object_candidates(
         inner = np.isfinite(place.surface.clearance_m)
         extra = extra + 0.5 * inner + host_cost(item, host) * (usual == "surface")
         edge = Support(item.id, place.parent, parent_surface=place.index)
-        base = np.full(len(places), place.surface.level)
-        candidates.append(Candidates(stances, base, [edge] * len(places), extra, usable))
+        base = np.full(len(flat), place.surface.level)
+        candidates.append(Candidates(stances, base, [edge] * len(flat), extra, usable))
     return candidates
 
 
@@ -232,13 +245,10 @@ def _wall_candidates(scene: Scene, item: SceneObject, above: Sequence[str], fram
     supports: list[Support | None] = []
     height, width = float(item.size_m[2]), float(item.size_m[1])
     for wall in frame.walls:
-        low, high = width / 2 + 0.05, wall.length_m - width / 2 - 0.05
-        if high < low or wall.high_m - wall.low_m < height:
+        if wall.high_m - wall.low_m < height:
             continue
-        ts = np.unique(np.concatenate([np.arange(low, high, STEP_M), [high, 0.5 * wall.length_m]]))
-        hosts = [scene.object(i) for i in above]
-        ts = np.concatenate([ts, [float(wall.t_of(h.pose.position[:2])) for h in hosts]])
-        for t in ts[(ts >= low - 1e-9) & (ts <= high + 1e-9)]:
+        hosts = [float(wall.t_of(scene.object(i).pose.position[:2])) for i in above]
+        for t in _steps_along(wall, width, 0.05, hosts):
             span = (t - width / 2, t + width / 2)
             top = frame.floor_m
             behind = 0.0
@@ -269,35 +279,15 @@ def _wall_candidates(scene: Scene, item: SceneObject, above: Sequence[str], fram
 def _ceiling_candidates(scene: Scene, item: SceneObject, above: Sequence[str], frame: RoomFrame) -> Candidates:
     low, high = frame.outline.min(axis=0), frame.outline.max(axis=0)
     steps = [np.linspace(a, b, 15)[1:-1] for a, b in zip(low, high, strict=True)]
-    xs, ys = np.meshgrid(*steps)
-    hosts = [scene.object(i).pose.position[:2] for i in above]
-    places = np.concatenate([np.column_stack([xs.ravel(), ys.ravel()]), frame.middle[None], *(h[None] for h in hosts)])
+    hosts = [scene.object(i).pose.position[None, :2] for i in above]
+    places = np.concatenate([_grid(steps), frame.middle[None], *hosts])
     stances = Stances(item.size_m, places, np.full(len(places), frame.axis_rad))
     usable = np.array(lie_within(stances.quads, frame.outline))
-    top = frame.floor_m + 2.5
+    heights, support = np.full(len(places), frame.floor_m + 2.5), None
     if frame.ceiling is not None:
         n = frame.ceiling.normal
         heights = (frame.ceiling.offset - places @ n[:2]) / n[2]
-    else:
-        heights = np.full(len(places), top)
+        support = Support(item.id, frame.ceiling.id, "mounted on", child_face="top")
     base = heights - item.size_m[2] - 0.005
-    support = None if frame.ceiling is None else Support(item.id, frame.ceiling.id, "mounted on", child_face="top")
     extra = 0.3 * np.linalg.norm(places - frame.middle, axis=1)
     return Candidates(stances, base, [support] * len(places), extra, usable)
-
-
-def _less_likely(candidates: list[Candidates]) -> list[Candidates]:
-    """The floor, for what people put on furniture."""
-    for one in candidates:
-        one.extra = one.extra + ON_FLOOR_COST
-    return candidates
-
-
-def _apart(a: SceneObject, b: SceneObject) -> float:
-    """Free distance between two objects, seen from above."""
-    return float(gaps(Stances.of(a).quads, footprint_of(b))[0])
-
-
-def _smaller(stances: Stances, share: float) -> Stances:
-    """These stances of a smaller object."""
-    return replace(stances, size_m=stances.size_m * share)

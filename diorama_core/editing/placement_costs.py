@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from diorama_core.editing.collisions import WALKED_ON_M
-from diorama_core.editing.footprints import Quads, footprint_of, footprints, lie_within, overlapping, to_outline
+from diorama_core.editing.footprints import Quads, footprint_of, footprints, lie_within, overlapping, put_at, to_outline
 from diorama_core.editing.habits import MID_WALL, OFTEN_AT_WALLS, belongs_before, stands
 from diorama_core.editing.placement_candidates import Candidates
 from diorama_core.editing.relations import NO_FRONT, Relation, Stances, is_long, relation_cost
@@ -171,9 +171,7 @@ def _own_front(
     sample = front_floor(replace(item, pose=Pose.upright(np.zeros(3), 0.0, item.pose.scale)))
     if sample is None:
         return np.zeros(len(stances.places))
-    c, s = np.cos(stances.yaws_rad), np.sin(stances.yaws_rad)
-    turns = np.stack([np.stack([c, s], axis=-1), np.stack([-s, c], axis=-1)], axis=-2)
-    fronts = sample @ turns + stances.places[:, None]
+    fronts = put_at(sample, stances.places, stances.yaws_rad)
     cost = 1.2 * ~np.array(lie_within(fronts, frame.outline))
     for other in scene.objects:
         if other.size_m[2] < WALKED_ON_M or belongs_before(other, item, relations) or not stands(scene, other):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.arrangement.surfaces import RestingSurface, object_surfaces, overhang_m, plane_surface
+from diorama_core.arrangement.surfaces import RestingSurface, convex_outline, object_surfaces, overhang_m, plane_surface
 from diorama_core.geometry.openings import DOOR
 from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene import edits
@@ -154,8 +154,6 @@ def seat(scene: Scene, library: ShapeLibrary, object_id: str) -> Scene:
 
 
 def _box_top(item: SceneObject) -> SupportTarget:
-    from diorama_core.arrangement.surfaces import convex_outline
-
     corners = item.corners_world
     top = corners[corners[:, 2] > corners[:, 2].max() - 0.01]
     up = np.array([0.0, 0.0, 1.0])
@@ -261,8 +259,8 @@ def spot_in_view(
         ahead: direction of the view.
         on_ceiling: whether it hangs from the ceiling rather than on a wall.
     """
-    planes = [p for p in scene.architecture.by_role("ceiling" if on_ceiling else "wall") if float(p.normal @ ahead) < 0]
-    planes = planes or list(scene.architecture.by_role("ceiling" if on_ceiling else "wall"))
+    all_planes = scene.architecture.by_role("ceiling" if on_ceiling else "wall")
+    planes = [p for p in all_planes if float(p.normal @ ahead) < 0] or list(all_planes)
     if not planes:
         return None
     places = [SupportTarget(plane_surface(p), p.id, of_object=False) for p in planes]

@@ -18,7 +18,7 @@ from diorama_core.editing.placement_candidates import Candidates, candidates_for
 from diorama_core.editing.placement_costs import placement_costs
 from diorama_core.editing.relations import Relation
 from diorama_core.editing.room_frame import RoomFrame
-from diorama_core.library.record import ShapeLibrary
+from diorama_core.library.record import Shape, ShapeLibrary
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
@@ -124,6 +124,13 @@ class Positioner:
             if not self.collisions.pairs(trial, [item.id]):
                 return Spot(pose, support, float(cost[k]))
         return None
+
+
+def new_object(scene: Scene, shape: Shape, kind: str) -> SceneObject:
+    """A shape as an object that a scene has not yet, with an id of a kind and a label of its own; it has no place."""
+    label = f"{shape.category} {sum(o.category == shape.category for o in scene.objects) + 1}"
+    nowhere = Pose.upright(np.zeros(3))
+    return SceneObject(edits.fresh_id(scene, kind), label, shape.category, shape.id, shape.size_m, nowhere)
 
 
 def _without(scene: Scene, item: SceneObject) -> Scene:

@@ -15,7 +15,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category
 from diorama_core.scene import edits
 from diorama_core.scene.room_edits import floor_height
-from diorama_core.scene.types import Scene, SceneObject, Support
+from diorama_core.scene.types import Scene, Support
 
 BELOW_M = 0.05
 """What reaches deeper below the floor is not in the room."""
@@ -121,17 +121,15 @@ def rename(scene: Scene, object_id: str, reconstruction: Found) -> Scene:
 def _describe(
     scene: Scene, object_id: str, reconstruction: Found, *, colour: tuple[float, float, float] | None
 ) -> Scene:
-    def describe(item: SceneObject) -> SceneObject:
-        new = reconstruction.item
-        return replace(
-            item,
-            label=new.label,
-            category=new.category,
-            candidates=new.candidates,
-            box_px=new.box_px,
-            confidence=new.confidence,
-            colour=colour,
-            photo_materials=new.photo_materials,
-        )
-
-    return replace(scene, objects=tuple(describe(o) if o.id == object_id else o for o in scene.objects))
+    new, item = reconstruction.item, scene.object(object_id)
+    described = replace(
+        item,
+        label=new.label,
+        category=new.category,
+        candidates=new.candidates,
+        box_px=new.box_px,
+        confidence=new.confidence,
+        colour=colour,
+        photo_materials=new.photo_materials,
+    )
+    return replace(scene, objects=tuple(described if o is item else o for o in scene.objects))

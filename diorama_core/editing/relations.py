@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.editing.footprints import Points, Quad, Quads, footprint_of, footprints, gaps
+from diorama_core.editing.footprints import Points, Quads, footprint_of, footprints, gap_between, gaps
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.library.taxonomy import broad, category, having
 from diorama_core.scene.support import ancestors
@@ -164,19 +164,20 @@ class _Relative:
 
     @property
     def too_far(self) -> Float[np.ndarray, "n"]:
-        """Cost of a distance at which the target is not used."""
+        """Cost of a distance at which the target is not used: people talk across a few metres, and watch a screen
+        across more, which stays at its wall in a large room.
+        """
         apart = np.linalg.norm(self.target.pose.position[:2] - self.stances.places, axis=1)
-        return _too_far(apart, self.name, self.target)
+        watched = {self.name, self.target.category} & having("watched")
+        return np.maximum(apart - (WATCHING_REACH_M if watched else FACING_REACH_M), 0.0) / 0.5
 
 
 def _to_target(
-    kind: RelationKind, stances: Stances, category_name: str, target: SceneObject, aside_m: float = 0.0
+    kind: RelationKind, stances: Stances, category_name: str, target: SceneObject, aside_m: float
 ) -> Float[np.ndarray, "n"]:
     local = (stances.places - target.pose.position[:2]) @ target.pose.R_world_object[:2, :2]
     gap = gaps(stances.quads, footprint_of(target))
-    cost = _COSTS.get(kind)
-    relative = _Relative(kind, stances, category_name, target, aside_m, local, target.size_m[:2] / 2, gap)
-    return np.zeros(len(local)) if cost is None else cost(relative)
+    return _COSTS[kind](_Relative(kind, stances, category_name, target, aside_m, local, target.size_m[:2] / 2, gap))
 
 
 def _cost_over(r: _Relative) -> Float[np.ndarray, "n"]:
@@ -188,7 +189,7 @@ def _cost_beside(r: _Relative) -> Float[np.ndarray, "n"]:
     if category(r.target.category).mount == "wall":
         return _cost_by_window(r)
     if broad(r.name) == broad(r.target.category) == "bed":
-        heading = _angle(r.stances.yaws_rad, np.full(len(r.local), r.target.pose.yaw_rad))
+        heading = _angle(r.stances.yaws_rad, r.target.pose.yaw_rad)
         off_side = np.maximum(r.half[1] - np.abs(r.local[:, 1]), 0.0) / 0.3 + np.abs(r.local[:, 0]) / 0.6
         return heading / FACING_RAD + off_side + np.abs(r.gap - BETWEEN_BEDS_M) / 0.6
     far = np.maximum(r.gap - SIDE_GAP_M, 0.0) / 0.3
@@ -239,7 +240,7 @@ def _left_or_right(r: _Relative) -> Float[np.ndarray, "n"]:
 def _cost_around(r: _Relative) -> Float[np.ndarray, "n"]:
     half, local, yaws = r.half, r.local, r.stances.yaws_rad
     seat, at_front = np.zeros(len(local)), np.zeros(len(local))
-    if _is_seat(r.name):  # a long table is looked at across, not along to its middle
+    if r.name in SEATS:  # a long table is looked at across, not along to its middle
         spine = half - half.min()
         across = (np.clip(local, -spine, spine) - local) @ r.target.pose.R_world_object[:2, :2].T
         seat = np.maximum(_angle(yaws, np.arctan2(across[:, 1], across[:, 0])) - FACING_RAD, 0.0) / FACING_RAD
@@ -263,7 +264,7 @@ def _facing(r: _Relative) -> Float[np.ndarray, "n"]:
 
 
 def _opposite(r: _Relative) -> Float[np.ndarray, "n"]:
-    heading = _angle(r.stances.yaws_rad, np.full(len(r.local), r.target.pose.yaw_rad + np.pi))
+    heading = _angle(r.stances.yaws_rad, r.target.pose.yaw_rad + np.pi)
     aside = np.maximum(np.abs(r.local[:, 1]) - 0.5 * r.half[1] - 0.2, 0.0)
     before = np.maximum(r.half[0] - r.local[:, 0], 0.0) / 0.3
     turned = np.minimum(np.maximum(r.looking - FACING_RAD, 0.0), np.maximum(heading - FACING_RAD, 0.0)) / FACING_RAD
@@ -313,24 +314,14 @@ def _across(stances: Stances, target: SceneObject) -> Float[np.ndarray, "n"]:
     return np.abs(np.cos(long_rad - target.pose.yaw_rad))
 
 
-def _is_seat(name: str) -> bool:
-    return name in SEATS
-
-
 def _too_near(name: str, target: SceneObject, gap_m: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
     """Seats that face each other leave room for legs, and for a table between."""
-    if not (_is_seat(name) and _is_seat(target.category)):
+    if not (name in SEATS and target.category in SEATS):
         return np.zeros(len(gap_m))
     return 0.8 * np.maximum(SEATS_FACING_M - gap_m, 0.0)
 
 
-def _too_far(apart_m: Float[np.ndarray, "n"], name: str, target: SceneObject) -> Float[np.ndarray, "n"]:
-    """People talk across a few metres, and watch a screen across more: it stays at its wall in a large room."""
-    watched = {name, target.category} & having("watched")
-    return np.maximum(apart_m - (WATCHING_REACH_M if watched else FACING_REACH_M), 0.0) / 0.5
-
-
-def _angle(a: Float[np.ndarray, "n"], b: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n"]:
+def _angle(a: Float[np.ndarray, "n"], b: Float[np.ndarray, "n"] | float) -> Float[np.ndarray, "n"]:
     return np.abs(np.arctan2(np.sin(a - b), np.cos(a - b)))
 
 
@@ -354,7 +345,7 @@ def _against_wall(stances: Stances, frame: RoomFrame, toward: tuple[float, float
     for wall in frame.walls:
         if toward is not None and -float(wall.inward @ toward) < THAT_WAY:
             continue
-        turned = _angle(stances.yaws_rad, np.full(len(stances.yaws_rad), wall.yaw_rad))
+        turned = _angle(stances.yaws_rad, wall.yaw_rad)
         back = wall.off_of(stances.places) - stances.size_m[0] / 2
         t = wall.t_of(stances.places)
         off_end = np.maximum(np.maximum(-t, t - wall.length_m), 0.0)
@@ -388,11 +379,11 @@ def unmet_cost(scene: Scene, object_id: str, relation: Relation, frame: RoomFram
         return 0.0 if any(t in above for t in relation.targets) else 2.0
     if relation.kind == "under" and targets:
         under = all(item.corners_world[:, 2].max() <= t.corners_world[:, 2].max() + 0.02 for t in targets.values())
-        meet = all(_meet(item, t) for t in targets.values())
+        meet = all(gap_between(item, t) <= 1e-6 for t in targets.values())
         return 0.0 if under and meet else 2.0
     if relation.kind == "above" and targets:
         over = all(item.corners_world[:, 2].min() >= t.corners_world[:, 2].max() - 0.05 for t in targets.values())
-        beside = max(float(gaps(Stances.of(item).quads, footprint_of(t))[0]) for t in targets.values())
+        beside = max(gap_between(item, t) for t in targets.values())
         return 0.0 if over and beside < 0.5 else 2.0
     if relation.kind == "against wall" and category(item.category).mount == "wall" and relation.toward is None:
         return 0.0
@@ -409,8 +400,3 @@ def is_met(scene: Scene, object_id: str, relation: Relation, frame: RoomFrame) -
         frame: the room's axes and outline.
     """
     return unmet_cost(scene, object_id, relation, frame) <= MET
-
-
-def _meet(a: SceneObject, b: SceneObject) -> bool:
-    quad: Quad = footprint_of(b)
-    return bool(gaps(Stances.of(a).quads, quad)[0] <= 1e-6)

@@ -149,19 +149,16 @@ def front_floor(item: SceneObject) -> Quad | None:
     depth = category(item.category).floor_before_m or 0.0
     if depth <= 0.0:
         return None
-    yaw = item.pose.yaw_rad
-    ahead = np.array([np.cos(yaw), np.sin(yaw)]) * (item.size_m[0] + depth) / 2
-    size = np.array([depth - 0.02, 0.8 * item.size_m[1]])
-    return footprints(size, (item.pose.position[:2] + ahead)[None], np.array([yaw]))[0]
+    return _floor_ahead(item, (item.size_m[0] + depth) / 2, depth - 0.02, 0.8 * item.size_m[1])
 
 
 def door_floors(objects: Iterable[SceneObject]) -> list[Quad]:
     """The floor before every door."""
-    floors = []
-    for item in objects:
-        if item.category == DOOR:
-            yaw = item.pose.yaw_rad
-            ahead = np.array([np.cos(yaw), np.sin(yaw)]) * SWING_M / 2
-            size = np.array([SWING_M, item.size_m[1]])
-            floors.append(footprints(size, (item.pose.position[:2] + ahead)[None], np.array([yaw]))[0])
-    return floors
+    return [_floor_ahead(o, SWING_M / 2, SWING_M, o.size_m[1]) for o in objects if o.category == DOOR]
+
+
+def _floor_ahead(item: SceneObject, middle_m: float, depth_m: float, width_m: float) -> Quad:
+    """A rectangle of floor whose middle is so far ahead of an object's."""
+    yaw = item.pose.yaw_rad
+    ahead = np.array([np.cos(yaw), np.sin(yaw)]) * middle_m
+    return footprints(np.array([depth_m, width_m]), (item.pose.position[:2] + ahead)[None], np.array([yaw]))[0]

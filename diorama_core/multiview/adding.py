@@ -41,6 +41,8 @@ from diorama_core.multiview.rooms import (
     estimate_room_photo,
     photo_world,
     read_photo,
+    room_in_photo,
+    textures_of,
     to_placed_picture,
     track_name,
 )
@@ -51,7 +53,7 @@ from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.edits import fresh_id, set_metrics
 from diorama_core.scene.support import check_scene
-from diorama_core.scene.types import Camera, Scene, SceneObject, Support
+from diorama_core.scene.types import Camera, Scene, SceneObject
 
 DISTANCES = tuple(float(f) for f in np.geomspace(0.7, 1.43, 13))
 """Factors on the distance between two photos that are tried."""
@@ -132,7 +134,7 @@ def with_photo(
         for box, item in claimed.items()
         if item.id in changeable and (share := _share_of_new(sightings[item.id], others, new_photo, box)) is not None
     }
-    room = _room_of(scene, read) if measured_room else None
+    room = GivenRoom(room_in_photo(scene.architecture, read)) if measured_room else None
     scene, names, textures = _with_new(scene, read, new_photo, claimed, shares, library, progress.part(0.4, 0.8), room)
     ids = {**{box: item.id for box, item in claimed.items()}, **names}
     if names and not measured_room:
@@ -152,11 +154,6 @@ def with_photo(
     photo = replace(new, inputs=inputs, camera=read.posed.camera, seen=seen)
     joined = tuple(item.id for item in claimed.values())
     return AddedPhoto(scene, photo, tuple(names.values()), joined, textures)
-
-
-def _room_of(scene: Scene, read: ReadPhoto) -> GivenRoom:
-    world = move_to_room(Scene(architecture=scene.architecture), np.linalg.inv(read.T_room_photo))
-    return GivenRoom(world.architecture)
 
 
 def _read_known_photos(
@@ -238,25 +235,21 @@ def _place_at_likeliest_distance(
         costs = [fit_track(((0, a), (1, b)), (known, photo)).cuboid.cost for a, b in pairs]
         return float(np.minimum(costs, SETTINGS.max_cost).sum())
 
-    tried = [place_at(float(f)) for f in DISTANCES]
-    costs = [
-        against(photo) + (np.log(f) / SETTINGS.distance_log_sigma) ** 2
-        for f, (_, photo) in zip(DISTANCES, tried, strict=True)
-    ]
-    return tried[int(np.argmin(costs))]
+    tried = [place_at(f) for f in DISTANCES]
+    odd = (np.log(DISTANCES) / SETTINGS.distance_log_sigma) ** 2
+    return tried[int(np.argmin(odd + [against(photo) for _, photo in tried]))]
 
 
 def _boxes_of(
     object_id: str, others: Sequence[tuple[FurtherPhoto, ReadPhoto, RoomPhoto]]
 ) -> tuple[tuple[int, int], ...]:
     """The boxes of an object in the known photos: numbers of photo and box."""
-    pairs = []
-    for number, (photo, read, _) in enumerate(others):
-        for name, box in photo.seen:
-            index = _same(box, read) if name == object_id else None
-            if index is not None:
-                pairs.append((number, index))
-    return tuple(pairs)
+    return tuple(
+        (number, index)
+        for number, (photo, read, _) in enumerate(others)
+        for name, box in photo.seen
+        if name == object_id and (index := _same(box, read)) is not None
+    )
 
 
 def _same(box: Box, read: ReadPhoto) -> int | None:
@@ -300,16 +293,17 @@ def _match_boxes_to_objects(
     for k, item in enumerate(objects):
         seen = sightings[item.id]
         only = (others[seen[0][0]], seen[0][1]) if len(seen) == 1 and item.id in movable else None
-        cuboid = JointCuboid(_middle(item), item.pose.yaw_rad, item.size_m, 0.0)
+        cuboid = _cuboid_of(item)
         for box, one in enumerate(new_photo.alone):
             if box not in given and broad(item.category) == broad(one.kind.name):
                 shared[k, box] = overlap(cuboid, only, new_photo, box)
     return {box: objects[k] for box, k in claims(shared).items()}
 
 
-def _middle(item: SceneObject) -> np.ndarray:
+def _cuboid_of(item: SceneObject) -> JointCuboid:
     corners = item.corners_world
-    return (corners.min(axis=0) + corners.max(axis=0)) / 2
+    middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+    return JointCuboid(middle, item.pose.yaw_rad, item.size_m, 0.0)
 
 
 def _with_new(
@@ -354,29 +348,21 @@ def _with_new(
         names[k] = ids[track_name(k)] = fresh_id(scene, item.category)
         # The boxes and masks of objects are those of the scene's own photo.
         scene = replace(scene, objects=(*scene.objects, replace(item, id=names[k], box_px=None, mask_id=None)))
-        used = [m.texture for m in item.photo_materials if m.texture is not None and m.texture in built.textures]
-        textures |= {name: built.textures[name] for name in used}
+        textures |= textures_of(item, built)
     for k, share in shares.items():
         if scene_in_room.has_object(track_name(k)):
             item = better_seen(there_now[k], scene_in_room.object(track_name(k)), share)
             scene = replace(scene, objects=tuple(item if o.id == item.id else o for o in scene.objects))
-            used = [m.texture for m in item.photo_materials if m.texture is not None and m.texture in built.textures]
-            textures |= {name: built.textures[name] for name in used}
-    edges = [scene_in_room.support_of(track_name(k)) for k in names]
-    new_edges = [_transfer_support(edge, ids, scene_in_room, scene) for edge in edges if edge is not None]
-    known = {o.id for o in scene.objects} | {p.id for p in scene.architecture.planes}
-    supports = (*scene.supports, *(e for e in new_edges if e.parent in known))
+            textures |= textures_of(item, built)
+    held = (scene_in_room.support_of(track_name(k)) for k in names)
+    edges = (edge_in_room(edge, scene_in_room, scene.architecture) for edge in held if edge is not None)
+    new = (replace(e, child=ids[e.child], parent=ids.get(e.parent, e.parent)) for e in edges)
+    supports = (*scene.supports, *(e for e in new if scene.has_object(e.parent) or scene.has_plane(e.parent)))
     return replace(scene, supports=acyclic(supports)), names, textures
 
 
 def _track(number: int, one: Sighted, item: SceneObject | None) -> Track:
     """What a box is of: an object of the scene as it is there, or what the photo says by itself."""
     if item is None:
-        return Track(((0, number),), one.kind, JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0))
-    cuboid = JointCuboid(_middle(item), item.pose.yaw_rad, item.size_m, 0.0)
-    return Track(((0, number),), category(item.category), cuboid)
-
-
-def _transfer_support(edge: Support, ids: Mapping[str, str], scene_in_room: Scene, scene: Scene) -> Support:
-    edge = edge_in_room(edge, scene_in_room, scene.architecture)
-    return replace(edge, child=ids[edge.child], parent=ids.get(edge.parent, edge.parent))
+        return Track(((0, number),), one.kind, one.cuboid)
+    return Track(((0, number),), category(item.category), _cuboid_of(item))

@@ -19,7 +19,7 @@ from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.floor import scan_heights
 from diorama_core.perception.metrology.placement import place_all
 from diorama_core.perception.metrology.problem import View
-from diorama_core.scene.types import Camera, yaw_rotation
+from diorama_core.scene.types import Camera, rigid, yaw_rotation
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,10 +32,8 @@ class RoomAlignment:
 
     def camera(self, camera: Camera) -> Camera:
         """A camera of the poses' world in the room."""
-        T = np.eye(4)
-        T[:3, :3] = self.R @ camera.T_world_camera[:3, :3]
-        T[:3, 3] = self.scale * self.R @ camera.position + self.t
-        return Camera(camera.intrinsics, T)
+        t = self.scale * self.R @ camera.position + self.t
+        return Camera(camera.intrinsics, rigid(self.R @ camera.T_world_camera[:3, :3], t))
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,14 +57,12 @@ def align(
     """
     R = _estimate_room_rotation(readings, up)
     cameras = [RoomAlignment(R, 1.0, np.zeros(3)).camera(r.camera) for r in readings]
-    votes: list[tuple[float, float]] = []
     alone = [_alone(r, camera) for r, camera in zip(readings, cameras, strict=True)]
-    scale = 1.0
-    if not metric:
-        for i in range(len(readings)):
-            for j in range(i):
-                votes += _votes(cameras[i], cameras[j], readings[i], readings[j], alone[i][1], alone[j][1])
-        scale = _peak(votes) if votes else 1.0
+    pairs = [] if metric else [(i, j) for i in range(len(readings)) for j in range(i)]
+    votes: list[tuple[float, float]] = []
+    for i, j in pairs:
+        votes += _votes(cameras[i], cameras[j], readings[i], readings[j], alone[i][1], alone[j][1])
+    scale = _peak(votes) if votes else 1.0
     heights = [h - scale * float(c.position[2]) for (h, _), c in zip(alone, cameras, strict=True)]
     return RoomAlignment(R, scale, np.array([0.0, 0.0, float(np.median(heights))]))
 
@@ -78,8 +74,7 @@ def _estimate_room_rotation(
     turns = [r.camera.T_world_camera[:3, :3] @ r.estimate.best.R_world_camera.T for r in readings]
     weights = np.array([max(r.estimate.confidence * r.estimate.best.score, 1e-3) for r in readings])
     if up is None:
-        ups = np.array([T[:, 2] for T in turns])
-        up = _robust_direction(ups, weights)
+        up = _robust_direction(np.array([T[:, 2] for T in turns]), weights)
     up = up / np.linalg.norm(up)
     side = np.cross(up, [1.0, 0.0, 0.0] if abs(up[0]) < 0.9 else [0.0, 1.0, 0.0])
     side /= np.linalg.norm(side)
@@ -122,13 +117,13 @@ def _votes(
 ) -> list[tuple[float, float]]:
     """(logarithm of metres a unit, weight) of pairs of boxes of a kind whose rays meet."""
     rays_a, rays_b = _rays(a, reading_a.observations), _rays(b, reading_b.observations)
-    votes = []
+    votes, base = [], b.position - a.position
     for i, kind_a in enumerate(reading_a.observations.categories):
         for j, kind_b in enumerate(reading_b.observations.categories):
             cosine = float(rays_a[i] @ rays_b[j])
             if broad(kind_a.name) != broad(kind_b.name) or abs(cosine) > np.cos(SETTINGS.min_parallax_rad):
                 continue
-            along = np.linalg.solve(np.array([[1.0, -cosine], [cosine, -1.0]]), _pair(rays_a[i], rays_b[j], b, a))
+            along = np.linalg.solve([[1.0, -cosine], [cosine, -1.0]], [base @ rays_a[i], base @ rays_b[j]])
             if min(along) <= 0:
                 continue
             apart = a.position + along[0] * rays_a[i] - b.position - along[1] * rays_b[j]
@@ -138,11 +133,6 @@ def _votes(
                 agree = float(np.exp(-0.5 * ((both[0] - both[1]) / 0.3) ** 2))
                 votes.append((float(np.mean(both)), agree))
     return votes
-
-
-def _pair(ray_a: Float[np.ndarray, "3"], ray_b: Float[np.ndarray, "3"], b: Camera, a: Camera) -> Float[np.ndarray, "2"]:
-    base = b.position - a.position
-    return np.array([base @ ray_a, base @ ray_b])
 
 
 def _rays(camera: Camera, observations: BoxObservations) -> Float[np.ndarray, "n 3"]:

@@ -29,16 +29,14 @@ def following(photos: Sequence[FurtherPhoto], before: Camera | None, after: Came
     scale = None if before is None or after is None else _scale(before, after)
     if scale is None:
         return tuple(replace(p, camera=None, seen=(), T_world_sphere=None) for p in photos)
-    return tuple(
-        replace(
-            p,
-            camera=None
-            if p.camera is None
-            else Camera(p.camera.intrinsics, _scale_translation(p.camera.T_world_camera, scale)),
-            T_world_sphere=None if p.T_world_sphere is None else _scale_translation(p.T_world_sphere, scale),
-        )
-        for p in photos
-    )
+    return tuple(_scale_photo(p, scale) for p in photos)
+
+
+def _scale_photo(photo: FurtherPhoto, scale: float) -> FurtherPhoto:
+    camera, T = photo.camera, photo.T_world_sphere
+    if camera is not None:
+        camera = Camera(camera.intrinsics, _scale_translation(camera.T_world_camera, scale))
+    return replace(photo, camera=camera, T_world_sphere=None if T is None else _scale_translation(T, scale))
 
 
 def _scale(before: Camera, after: Camera) -> float | None:

@@ -23,7 +23,7 @@ from diorama_core.library.taxonomy import UNKNOWN, broad
 from diorama_core.multiview.joint_fit import NEAREST_M
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.progress import SILENT, Progress
-from diorama_core.scene.types import Camera, yaw_rotation
+from diorama_core.scene.types import Camera, rigid, yaw_rotation
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,7 @@ class _Search:
                 chosen.append((heading, k))
             if len(chosen) == SETTINGS.finalists:
                 break
-        return [self._camera(self._heading_rotation(heading), places[k]) for heading, k in chosen]
+        return [Camera(self._k, rigid(self._heading_rotation(heading), places[k])) for heading, k in chosen]
 
     def _alike(self, places: Float[np.ndarray, "p 3"], a: tuple[int, int], b: tuple[int, int]) -> bool:
         count = SETTINGS.headings
@@ -182,11 +182,6 @@ class _Search:
 
     def _heading_rotation(self, heading: int) -> Float[np.ndarray, "3 3"]:
         return yaw_rotation(2 * np.pi * heading / SETTINGS.headings) @ self._R_level
-
-    def _camera(self, R: Float[np.ndarray, "3 3"], place: Float[np.ndarray, "3"]) -> Camera:
-        T = np.eye(4)
-        T[:3, :3], T[:3, 3] = R, place
-        return Camera(self._k, T)
 
     def _scores(self, places: Float[np.ndarray, "p 3"], R: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "p"]:
         """How well boxes are covered from each place, roughly: what is behind the camera counts as very near."""
@@ -219,7 +214,7 @@ class _Search:
 
     def _count_unmarked(self, camera: Camera, marked: set[int]) -> int:
         """How many things that nothing hides are in view without a box."""
-        bounds, visible = self._bounds(camera, np.arange(len(self._things)))
+        bounds, visible = self._bounds(camera)
         area = (bounds[:, 2:] - bounds[:, :2]).prod(axis=1)
         away = np.array([np.linalg.norm(t.centre - camera.position) for t in self._things])
         count = 0
@@ -241,7 +236,7 @@ class _Search:
         return [(int(r), int(c)) for r, c in zip(rows, columns, strict=True) if shared[r, c] > 0.1]
 
     def _cuboid_box_iou(self, camera: Camera) -> Float[np.ndarray, "t b"]:
-        bounds, visible = self._bounds(camera, np.arange(len(self._corners)))
+        bounds, visible = self._bounds(camera)
         seen = self._boxes.box_px
         low, high = np.maximum(bounds[:, None], seen), np.minimum(bounds[:, None], seen)
         cut = np.where([True, True, False, False], low, high)
@@ -250,8 +245,8 @@ class _Search:
         iou = box_iou(shown, np.broadcast_to(seen, shown.shape))
         return np.where(visible[:, None], self._weight * iou, 0.0)
 
-    def _bounds(self, camera: Camera, which: np.ndarray) -> tuple[Float[np.ndarray, "m 4"], Bool[np.ndarray, "m"]]:
-        return visible_bounds(camera.to_camera(self._corners[which]), camera.intrinsics)
+    def _bounds(self, camera: Camera) -> tuple[Float[np.ndarray, "t 4"], Bool[np.ndarray, "t"]]:
+        return visible_bounds(camera.to_camera(self._corners), camera.intrinsics)
 
     def _refine(self, camera: Camera, pairs: Sequence[tuple[int, int]]) -> tuple[Camera, float]:
         """Least squares over turn, place and focal length, robust against boxes that are of something else."""
@@ -268,7 +263,7 @@ class _Search:
 
         def off(unknowns: Float[np.ndarray, "7"]) -> Float[np.ndarray, "r"]:
             moved_camera = move(unknowns)
-            bounds, _ = self._bounds(moved_camera, cuboids)
+            bounds, _ = visible_bounds(moved_camera.to_camera(self._corners[cuboids]), moved_camera.intrinsics)
             beyond = (bounds - seen) * outward / sigma
             edges = np.where(short, np.minimum(beyond, 0.0), beyond)
             tilt = (moved_camera.T_world_camera[2, :3] - self._R_level[2]) / SETTINGS.up_sigma

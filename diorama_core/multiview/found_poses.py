@@ -117,7 +117,7 @@ def common_points(
     with tempfile.TemporaryDirectory(prefix="diorama-photos-") as temporary:
         database = Path(temporary) / "database.db"
         names = _match_photos(colmap, (*photos, new), database, Path(temporary) / "pictures", progress)
-        scales = {p.name: _scale(p) for p in (*photos, new)}
+        scales = {p.name: _scale(*p.rgb.shape[:2]) for p in (*photos, new)}
         with colmap.Database.open(str(database)) as opened:
             images = {i.image_id: names[i.name] for i in opened.read_all_images()}
             points = {n: opened.read_keypoints(i)[:, :2] / scales[n] for i, n in images.items()}
@@ -127,9 +127,8 @@ def common_points(
                 if a == new.name:
                     a, b, matches = b, a, matches[:, ::-1]
                 if b == new.name:
-                    points_of_photos[a] = np.hstack([points[a][matches[:, 0]], points[b][matches[:, 1]]]).astype(
-                        np.float64
-                    )
+                    both = np.hstack([points[a][matches[:, 0]], points[b][matches[:, 1]]])
+                    points_of_photos[a] = both.astype(np.float64)
     return tuple(points_of_photos[p.name] for p in photos)
 
 
@@ -174,7 +173,7 @@ def _write_pictures(photos: Sequence[UnposedPhoto], folder: Path) -> Mapping[str
     names = {}
     for number, photo in enumerate(photos):
         height, width = photo.rgb.shape[:2]
-        scale = _scale(photo)
+        scale = _scale(width, height)
         size = (round(width * scale), round(height * scale))
         rgb = cv2.resize(photo.rgb, size, interpolation=cv2.INTER_AREA) if scale < 1.0 else photo.rgb
         file = f"{number:05d}.png"
@@ -183,8 +182,8 @@ def _write_pictures(photos: Sequence[UnposedPhoto], folder: Path) -> Mapping[str
     return names
 
 
-def _scale(photo: UnposedPhoto) -> float:
-    return min(1.0, LONGEST_PX / max(photo.rgb.shape[:2]))
+def _scale(width: int, height: int) -> float:
+    return min(1.0, LONGEST_PX / max(width, height))
 
 
 def _extract(
@@ -203,7 +202,7 @@ def _extract(
     done = 0
     for (width, height, focal_px), files in cameras.items():
         progress.report(done / len(names), f"Looking for features in {len(files)} photos")
-        scale = min(1.0, LONGEST_PX / max(width, height))
+        scale = _scale(width, height)
         w, h = round(width * scale), round(height * scale)
         f = w / (2 * np.tan(LIKELY_FOV_RAD / 2)) if focal_px is None else focal_px * scale
         reader = colmap.ImageReaderOptions()

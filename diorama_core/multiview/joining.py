@@ -38,6 +38,11 @@ class Sighted:
     supporter: int
     """As `metrology.placement.Placement.supporter`."""
 
+    @property
+    def cuboid(self) -> JointCuboid:
+        """What it says at no cost."""
+        return JointCuboid(self.centre, self.yaw_rad, self.size_m, 0.0)
+
 
 @dataclass(frozen=True, eq=False)
 class RoomPhoto:
@@ -76,15 +81,12 @@ def join_objects(photos: Sequence[RoomPhoto], progress: Progress = SILENT) -> tu
     """
     joining = _Joining(photos)
     tracks: list[Track] = []
-    steps = len(photos) * (1 + SETTINGS.rounds)
-    for number in range(len(photos)):
-        progress.report(number / steps, f"joining photo {number + 1} of {len(photos)}")
-        tracks = joining.with_photo(tracks, number)
-    if len(photos) > 1:
-        for turn in range(SETTINGS.rounds):
-            for number in range(len(photos)):
-                progress.report((len(photos) * (1 + turn) + number) / steps, f"joining photo {number + 1} again")
-                tracks = joining.with_photo(joining.without_photo(tracks, number), number)
+    count, rounds = len(photos), 1 + SETTINGS.rounds
+    for step in range(count * rounds if count > 1 else count):
+        turn, number = divmod(step, count)
+        which = "again" if turn else f"of {count}"
+        progress.report(step / (count * rounds), f"joining photo {number + 1} {which}")
+        tracks = joining.with_photo(joining.without_photo(tracks, number), number)
     return tuple(sorted(tracks, key=lambda t: t.boxes))
 
 
@@ -97,19 +99,18 @@ class _Joining:
 
     def with_photo(self, tracks: list[Track], number: int) -> list[Track]:
         """The tracks with the boxes of one more photo."""
-        photo = self._photos[number]
-        count = len(photo.alone)
-        shared = np.zeros((len(tracks), count))
+        alone = self._photos[number].alone
+        shared = np.zeros((len(tracks), len(alone)))
         for k, track in enumerate(tracks):
-            for box in range(count):
-                if broad(track.kind.name) == broad(photo.alone[box].kind.name):
+            for box, one in enumerate(alone):
+                if broad(track.kind.name) == broad(one.kind.name):
                     shared[k, box] = self._overlap(track, number, box)
         claimed = claims(shared)
         joined = list(tracks)
-        for box in range(count):
+        for box in range(len(alone)):
             if box in claimed:
-                boxes = tracks[claimed[box]].boxes
-                joined[claimed[box]] = self._fit(tuple(sorted((*boxes, (number, box)))))
+                k = claimed[box]
+                joined[k] = self._fit(tuple(sorted((*tracks[k].boxes, (number, box)))))
             else:
                 joined.append(self._fit(((number, box),)))
         return joined
@@ -153,8 +154,7 @@ def overlap(cuboid: JointCuboid, only: tuple[RoomPhoto, int] | None, photo: Room
     if only is None:
         return _cuboid_box_iou(cuboid, photo, box)
     first, index = only
-    one = photo.alone[box]
-    moved = JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0)
+    moved = photo.alone[box].cuboid
     return max(
         penalty
         * max(
@@ -192,8 +192,7 @@ def fit_track(boxes: Boxes, photos: Sequence[RoomPhoto]) -> Track:
     names = [a.kind.name for a in alone]
     kind = alone[names.index(max(sorted(set(names)), key=names.count))].kind
     if len(boxes) == 1:
-        one = alone[0]
-        return Track(boxes, kind, JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0))
+        return Track(boxes, kind, alone[0].cuboid)
     sightings = [(photos[photo].boxes, box) for photo, box in boxes]
     standing = kind.name == "door" or (
         kind.mount == "floor" and 2 * sum(a.supporter == FLOOR for a in alone) > len(alone)

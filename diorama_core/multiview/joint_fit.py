@@ -106,11 +106,19 @@ def fit_jointly(
 
 def _sigmas(problem: _Joint, unknowns: Float[np.ndarray, "1 7"], fixed: Bool[np.ndarray, "1 7"]) -> list[float]:
     """Deviations of the place (x, y) and of the logarithms of depth, width and height, from the cost's curvature."""
-    moves = STEP * np.concatenate([np.zeros((1, UNKNOWNS)), np.eye(UNKNOWNS)])
-    values = problem((unknowns + moves).reshape(-1, UNKNOWNS), UNKNOWNS + 1)
-    jacobian = ((values[1:] - values[0]) / STEP).T * ~fixed
+    jacobian = _linearise(problem, unknowns, fixed)[1][0]
     normal = jacobian.T @ jacobian + np.diag(np.where(fixed[0], 1.0, 1e-6))
     return [float(v) for v in np.sqrt(np.diag(np.linalg.inv(normal))[:5])]
+
+
+def _linearise(
+    problem: _Joint, unknowns: Float[np.ndarray, "n 7"], fixed: Bool[np.ndarray, "n 7"]
+) -> tuple[Float[np.ndarray, "n r"], Float[np.ndarray, "n r 7"]]:
+    """Residuals of the batch, and how they change with the unknowns that are not fixed (forward differences)."""
+    moves = STEP * np.concatenate([np.zeros((1, UNKNOWNS)), np.eye(UNKNOWNS)])
+    probes = (unknowns[None] + moves[:, None]).reshape(-1, UNKNOWNS)
+    values = problem(probes, UNKNOWNS + 1).reshape(UNKNOWNS + 1, len(unknowns), -1)
+    return values[0], ((values[1:] - values[0]) / STEP).transpose(1, 2, 0) * ~fixed[:, None, :]
 
 
 def _headings(mode: SizeMode, *, odd: bool) -> list[tuple[float, bool]]:
@@ -203,17 +211,13 @@ def _minimise(
     problem: _Joint, unknowns: Float[np.ndarray, "n 7"], fixed: Bool[np.ndarray, "n 7"], iterations: int
 ) -> tuple[Float[np.ndarray, "n 7"], Float[np.ndarray, "n"]]:
     """Levenberg-Marquardt over the batch, each row with its own damping."""
-    count = len(unknowns)
-    moves = STEP * np.concatenate([np.zeros((1, UNKNOWNS)), np.eye(UNKNOWNS)])
-    damping = np.full(count, 1e-2)
+    damping = np.full(len(unknowns), 1e-2)
     unknowns = problem.clip_sizes(unknowns)
     cost = (problem(unknowns) ** 2).sum(axis=1)
     for _ in range(iterations):
-        probes = (unknowns[None] + moves[:, None]).reshape(-1, UNKNOWNS)
-        values = problem(probes, UNKNOWNS + 1).reshape(UNKNOWNS + 1, count, -1)
-        jacobian = ((values[1:] - values[0]) / STEP).transpose(1, 2, 0) * ~fixed[:, None, :]
+        residuals, jacobian = _linearise(problem, unknowns, fixed)
         normal = np.einsum("nri,nrj->nij", jacobian, jacobian)
-        gradient = np.einsum("nri,nr->ni", jacobian, values[0])
+        gradient = np.einsum("nri,nr->ni", jacobian, residuals)
         diagonal = np.einsum("nii->ni", normal)
         normal = normal + np.eye(UNKNOWNS) * (damping[:, None] * (diagonal + 1e-2) + fixed)[:, None]
         step = -np.linalg.solve(normal, gradient[..., None])[..., 0]

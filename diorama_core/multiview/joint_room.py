@@ -94,9 +94,8 @@ def joint_room(photos: Sequence[SeenRoom], standing: Sequence[Float[np.ndarray, 
         wall = _wall(start, end, lines, level, top_m)
         if wall is not None:
             planes.append(replace(wall, id=f"wall_{len(planes)}"))
-    ceiling = max(
-        (c for p in photos for c in p.architecture.by_role("ceiling")), key=lambda c: c.confidence, default=None
-    )
+    ceilings = (c for p in photos for c in p.architecture.by_role("ceiling"))
+    ceiling = max(ceilings, key=lambda c: c.confidence, default=None)
     if ceiling is not None:
         lid = np.column_stack([outline[::-1], np.full(len(outline), top_m)])
         planes.append(replace(ceiling, id="ceiling", polygon=lid))
@@ -192,19 +191,14 @@ def _outline(
         normal = np.array([*line.normal, 0.0])
         halves = [clip_polygon(c, s * normal, s * line.offset) for c in cells for s in (1.0, -1.0)]
         cells = [h for h in halves if len(h) >= 3 and abs(signed_area(h[:, :2])) > SETTINGS.grid_m**2]
-    xs, ys = (
-        np.arange(low[0], high[0], SETTINGS.grid_m) + SETTINGS.grid_m / 2,
-        np.arange(low[1], high[1], SETTINGS.grid_m) + SETTINGS.grid_m / 2,
-    )
+    xs, ys = (np.arange(low[k], high[k], SETTINGS.grid_m) + SETTINGS.grid_m / 2 for k in (0, 1))
     grid = np.stack(np.meshgrid(xs, ys), axis=-1).reshape(-1, 2)
     says = _evidence(grid, photos, lines, standing)
     inside = [c[:, :2] for c in cells if (here := is_in_polygon(grid, c[:, :2])).any() and says[here].sum() > 0]
     if not inside:
         return None
-    sections = [
-        manifold3d.CrossSection([c], manifold3d.FillRule.NonZero).offset(1e-4)
-        for c in map(_orient_counter_clockwise, inside)
-    ]
+    turned = (c if signed_area(c) > 0 else c[::-1] for c in inside)
+    sections = [manifold3d.CrossSection([c], manifold3d.FillRule.NonZero).offset(1e-4) for c in turned]
     union = manifold3d.CrossSection.batch_boolean(sections, manifold3d.OpType.Add).simplify(1e-2)
     outlines = [o for o in union.to_polygons() if signed_area(o) > 0]
     eyes = np.array([p.camera.position[:2] for p in photos])
@@ -233,9 +227,7 @@ def _evidence(
                 line = placed[id(wall)]
                 behind = grid @ line.normal < line.offset
                 hidden = behind & seen & _are_behind_piece(grid, photo.camera, wall)
-                says -= wall.confidence * (
-                    np.where(hidden, SETTINGS.shadow, 0.0) + np.where(behind, SETTINGS.behind, 0.0)
-                )
+                says -= wall.confidence * (SETTINGS.shadow * hidden + SETTINGS.behind * behind)
     for footprint in standing:
         says[is_in_polygon(grid, footprint)] += SETTINGS.standing
     for photo in photos:
@@ -273,36 +265,19 @@ def _wall(
     along = (end - start) / length
     normal = np.array([-along[1], along[0]])  # the outline runs counter-clockwise: the room is to its left
     for line in lines:
-        if (
-            float(normal @ line.normal) < SAME_COSINE
-            or abs(float(line.normal @ (start + end)) / 2 - line.offset) > SETTINGS.grid_m
-        ):
+        off_line = abs(float(line.normal @ (start + end)) / 2 - line.offset)
+        if float(normal @ line.normal) < SAME_COSINE or off_line > SETTINGS.grid_m:
             continue
         # Seen from the room, a wall's foot from left to right runs against the outline.
         polygon = np.array([[*end, level_m], [*start, level_m], [*start, top_m], [*end, top_m]])
-        covering = [w for w in line.walls if _overlap_length(w, start, along, length) > 0]
-        seen = np.zeros(max(2, round(length / SETTINGS.grid_m)), dtype=bool)
-        for wall in covering:
-            seen |= _covers(wall, start, along, length, len(seen))
+        count = max(2, round(length / SETTINGS.grid_m))
+        seen, at, covering = np.zeros(count, dtype=bool), (np.arange(count) + 0.5) / count * length, []
+        for wall in line.walls:
+            reach = (wall.polygon[:, :2] - start) @ along
+            if min(reach.max(), length) > max(reach.min(), 0.0):
+                covering.append(wall)
+                seen |= (at > reach.min()) & (at < reach.max())
         model = max(covering or line.walls, key=lambda w: w.confidence)
         sure = model.confidence if seen.mean() >= SETTINGS.min_covered else GUESS_CONFIDENCE
         return replace(model, polygon=polygon, confidence=sure)
     return None
-
-
-def _covers(
-    wall: Plane, start: Float[np.ndarray, "2"], along: Float[np.ndarray, "2"], length: float, count: int
-) -> Bool[np.ndarray, "n"]:
-    reach = (wall.polygon[:, :2] - start) @ along
-    at = (np.arange(count) + 0.5) / count * length
-    return np.asarray((at > reach.min()) & (at < reach.max()))
-
-
-def _overlap_length(wall: Plane, start: Float[np.ndarray, "2"], along: Float[np.ndarray, "2"], length: float) -> float:
-    reach = (wall.polygon[:, :2] - start) @ along
-    return float(min(reach.max(), length) - max(reach.min(), 0.0))
-
-
-def _orient_counter_clockwise(polygon: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n 2"]:
-    """The polygon counter-clockwise."""
-    return polygon if signed_area(polygon) > 0 else polygon[::-1]

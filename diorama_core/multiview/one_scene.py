@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +12,8 @@ from diorama_core.geometry.openings import STANDS_OUT_M
 from diorama_core.multiview.joint_fit import JointCuboid
 from diorama_core.multiview.settings import SETTINGS
 from diorama_core.scene.types import Architecture, Camera, Pose, Scene, SceneObject, Support, yaw_rotation
+
+Size = tuple[float, float, float]
 
 
 def acyclic(edges: Sequence[Support]) -> tuple[Support, ...]:
@@ -45,16 +47,11 @@ def move_to_room(scene: Scene, T: Float[np.ndarray, "4 4"]) -> Scene:
     """A scene of a photo's own world, and all candidates' poses, in the room: `p_room = T @ p`, rigid."""
     R, t = T[:3, :3], T[:3, 3]
 
-    def pose_in_room(pose: Pose) -> Pose:
+    def pose_in_room(pose: Pose, shape_size_m: Size) -> Pose:
         return Pose(R @ pose.R_world_object, R @ pose.position + t, pose.scale)
 
     planes = tuple(replace(p, polygon=p.polygon @ R.T + t) for p in scene.architecture.planes)
-    objects = tuple(
-        replace(
-            o, pose=pose_in_room(o.pose), candidates=tuple(replace(c, pose=pose_in_room(c.pose)) for c in o.candidates)
-        )
-        for o in scene.objects
-    )
+    objects = tuple(_with_poses(o, pose_in_room) for o in scene.objects)
     camera = scene.camera and Camera(scene.camera.intrinsics, T @ scene.camera.T_world_camera)
     return replace(scene, camera=camera, objects=objects, architecture=replace(scene.architecture, planes=planes))
 
@@ -65,7 +62,7 @@ def filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
     Extents that boxes hardly tell are those that the shape has in proportion to the others.
     """
 
-    def fit(pose: Pose, shape_size_m: tuple[float, float, float]) -> Pose:
+    def fit(pose: Pose, shape_size_m: Size) -> Pose:
         turn = round((pose.yaw_rad - joint.yaw_rad) / (np.pi / 2))
         axes = [1, 0, 2] if turn % 2 else [0, 1, 2]
         shape = np.array(shape_size_m)
@@ -74,14 +71,13 @@ def filling(item: SceneObject, joint: JointCuboid) -> SceneObject:
         base = joint.centre[2] - joint.size_m[2] / 2
         return Pose(R, np.array([*joint.centre[:2], base + size[2] / 2]), size / shape)
 
-    candidates = tuple(replace(c, pose=fit(c.pose, c.shape_size_m)) for c in item.candidates)
-    return replace(item, pose=fit(item.pose, item.shape_size_m), candidates=candidates)
+    return _with_poses(item, fit)
 
 
 def set_into_wall(item: SceneObject) -> SceneObject:
     """A door or window with its frame in the wall: no photo tells how thick it is, only what stands out is seen."""
 
-    def thinner(pose: Pose, shape_size_m: tuple[float, float, float]) -> Pose:
+    def thinner(pose: Pose, shape_size_m: Size) -> Pose:
         depth = shape_size_m[0] * float(pose.scale[0])
         if depth <= STANDS_OUT_M:
             return pose
@@ -89,8 +85,13 @@ def set_into_wall(item: SceneObject) -> SceneObject:
         scale = pose.scale * [STANDS_OUT_M / depth, 1.0, 1.0]
         return Pose(pose.R_world_object, pose.position - behind, scale)
 
-    candidates = tuple(replace(c, pose=thinner(c.pose, c.shape_size_m)) for c in item.candidates)
-    return replace(item, pose=thinner(item.pose, item.shape_size_m), candidates=candidates)
+    return _with_poses(item, thinner)
+
+
+def _with_poses(item: SceneObject, change: Callable[[Pose, Size], Pose]) -> SceneObject:
+    """The object with another pose, by the pose and the size of its shape, and so every candidate."""
+    candidates = tuple(replace(c, pose=change(c.pose, c.shape_size_m)) for c in item.candidates)
+    return replace(item, pose=change(item.pose, item.shape_size_m), candidates=candidates)
 
 
 def fuse_proportions(

@@ -59,7 +59,7 @@ def undistort_by_lines(inputs: Inputs, k1: float | None = None) -> tuple[Inputs,
         inputs: as given.
         k1: what the lines said before (`Photo.straightened`), 0 to leave the photo as it is; None to ask them.
     """
-    k, lens = fit_lens(inputs.photo.rgb) if k1 is None else _lens_from_coefficient(inputs.photo, k1)
+    k, lens = fit_lens(inputs.photo.rgb) if k1 is None else _lens(inputs.photo.width, inputs.photo.height, k1)
     straight = undistort(inputs, k, lens)
     if straight is inputs:
         return inputs, ()
@@ -72,11 +72,7 @@ def undistort_by_lines(inputs: Inputs, k1: float | None = None) -> tuple[Inputs,
 
 def box_before_straightening(box: LabelledBox, photo: Photo) -> LabelledBox:
     """A box of a straightened photo as it is in the photo's file."""
-    return distort_box(box, *_lens_from_coefficient(photo, photo.straightened or 0.0))
-
-
-def _lens_from_coefficient(photo: Photo, k1: float) -> tuple[Intrinsics, Lens]:
-    return _camera(photo.width, photo.height), Lens((k1,) if k1 else ())
+    return distort_box(box, *_lens(photo.width, photo.height, photo.straightened or 0.0))
 
 
 def fit_lens(rgb: UInt8[np.ndarray, "h w 3"]) -> tuple[Intrinsics, Lens]:
@@ -89,7 +85,10 @@ def fit_lens(rgb: UInt8[np.ndarray, "h w 3"]) -> tuple[Intrinsics, Lens]:
     grey = cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
     small = cv2.resize(grey, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA) if factor < 1 else grey
     lines = np.array(list(_edges(np.asarray(small)))).reshape(-1, _SAMPLES, 2)
-    k1 = _coefficient(lines, _camera(small.shape[1], small.shape[0]))
+    return _lens(width, height, _coefficient(lines, _camera(small.shape[1], small.shape[0])))
+
+
+def _lens(width: int, height: int, k1: float) -> tuple[Intrinsics, Lens]:
     return _camera(width, height), Lens((k1,) if k1 else ())
 
 

@@ -25,7 +25,7 @@ from diorama_core.io.bounded import megabytes, read_json, shorten
 from diorama_core.io.contained import ContainedFiles
 from diorama_core.multiview.camera_changes import quarters_of
 from diorama_core.multiview.lens import STRAIGHT, Lens
-from diorama_core.scene.types import Camera, Intrinsics
+from diorama_core.scene.types import Camera, Intrinsics, rigid
 
 MAX_BYTES = 512_000_000
 MAX_PHOTOS = 10_000
@@ -82,9 +82,9 @@ def read_poses(path: Path, photos: Sequence[Path] = ()) -> Poses:
     Raises:
         InputError: nothing of the kind is there, or it makes no sense.
     """
-    reader = _reader_of(path, photos)
+    read = _reader_of(path, photos)
     try:
-        poses = reader(path)
+        poses = read()
     except KeyError as error:
         missing = shorten(str(error.args[0]) if error.args else "")
         raise InputError(f"{path}: the cameras cannot be read: there is no {missing!r}; export them again") from error
@@ -95,23 +95,19 @@ def read_poses(path: Path, photos: Sequence[Path] = ()) -> Poses:
     return poses
 
 
-def _reader_of(path: Path, pictures: Sequence[Path]) -> Callable[[Path], Poses]:
+def _reader_of(path: Path, pictures: Sequence[Path]) -> Callable[[], Poses]:
     if path.is_file() and path.suffix.lower() == ".json":
-        return lambda file: _nerfstudio(file, pictures)
+        return partial(_nerfstudio, path, pictures)
     for name in ("transforms.json", "transforms_train.json"):
         if (path / name).is_file():
-            return partial(_read_folder, lambda file: _nerfstudio(file, pictures), path / name)
+            return partial(_nerfstudio, path / name, pictures)
     for folder in (path, path / "sparse" / "0", path / "sparse"):
         for ending, reader in ((".bin", _colmap_binary), (".txt", _colmap_text)):
             if (folder / f"cameras{ending}").is_file() and (folder / f"images{ending}").is_file():
-                return partial(_read_folder, reader, folder)
+                return partial(reader, folder)
     if any(path.glob("frame_*.json")) or any(_polycam_files(path)):
-        return _arkit
+        return partial(_arkit, path)
     raise InputError(f"{path}: there is no transforms.json, COLMAP model or folder of ARKit frames")
-
-
-def _read_folder(reader: Callable[[Path], Poses], folder: Path, path: Path) -> Poses:
-    return reader(folder)
 
 
 def _nerfstudio(path: Path, pictures: Sequence[Path] = ()) -> Poses:
@@ -147,9 +143,7 @@ def _size_of(folder: Path, name: str, pictures: Sequence[Path]) -> tuple[int, in
         ValueError: there is no such picture.
     """
     plain = folder / name
-    beside = (
-        [plain] if plain.is_file() else sorted(plain.parent.glob(f"{plain.name}.*")) if plain.parent.is_dir() else []
-    )
+    beside = [plain] if plain.is_file() else sorted(plain.parent.glob(f"{plain.name}.*"))
     named = [p for p in pictures if p.name == plain.name or p.stem == plain.stem or p.stem == plain.name]
     for path in (*named, *beside):
         try:
@@ -239,10 +233,7 @@ def _colmap_camera(model: str, width: int, height: int, p: list[float]) -> tuple
 def _colmap_pose(numbers: list[float]) -> Float[np.ndarray, "4 4"]:
     """`T_world_camera` of a quaternion (w first) and a translation from the world to the camera."""
     w, x, y, z, *t = numbers
-    T = np.eye(4)
-    T[:3, :3] = Rotation.from_quat([x, y, z, w]).as_matrix()
-    T[:3, 3] = t
-    return np.linalg.inv(T)
+    return np.linalg.inv(rigid(Rotation.from_quat([x, y, z, w]).as_matrix(), np.array(t)))
 
 
 def _polycam_files(path: Path) -> Iterator[Path]:
@@ -288,9 +279,8 @@ def _size_beside(file: Path, K: Float[np.ndarray, "3 3"]) -> tuple[int, int]:
 
 def _intrinsics(width: Any, height: Any, fx: Any, fy: Any, cx: Any, cy: Any) -> Intrinsics:
     w, h = int(width), int(height)
-    return Intrinsics(
-        w, h, float(fx), float(fy), w / 2 if cx is None else float(cx), h / 2 if cy is None else float(cy)
-    )
+    middle = (w / 2 if cx is None else float(cx), h / 2 if cy is None else float(cy))
+    return Intrinsics(w, h, float(fx), float(fy), *middle)
 
 
 def _rigid(T: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "4 4"]:

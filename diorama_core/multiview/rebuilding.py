@@ -61,8 +61,7 @@ def with_photos_again(
     done: list[FurtherPhoto] = []
     textures: dict[str, UInt8[np.ndarray, "_ _ 3"]] = {}
     left_out: list[str] = []
-    for number, photo in enumerate(photos):
-        part = progress.part(number / len(photos), (number + 1) / len(photos))
+    for photo, part in zip(photos, progress.parts(len(photos)), strict=True):
         if photo.camera is None:
             done.append(photo)
             continue

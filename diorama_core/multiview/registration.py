@@ -17,16 +17,16 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float
 from scipy.optimize import least_squares
-from scipy.spatial.transform import Rotation
 
 from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
 from diorama_core.errors import InputError
+from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.multiview.found_poses import LIKELY_FOV_RAD, UnposedPhoto, common_points
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.raycast import PinholeView
 from diorama_core.render.world import scene_world
-from diorama_core.scene.types import Camera, Intrinsics, Scene
+from diorama_core.scene.types import Camera, Intrinsics, Scene, rigid
 
 GUESSED_LOG_SIGMA = 0.25
 
@@ -137,18 +137,16 @@ def solve_camera(common: Sequence[CommonPoints], k: Intrinsics, focal_log_sigma:
     """
     if sum(len(c.points) for c in common) < SETTINGS.min_points:
         return None
-    points, pixels = np.vstack([c.points for c in common]), np.vstack([c.new_px for c in common])
+    points, pixels = _stack(common)
     best: tuple[int, Intrinsics, np.ndarray, np.ndarray, np.ndarray] | None = None
-    factors = (
-        np.exp(np.linspace(-1.5, 1.5, 7) * focal_log_sigma) if focal_log_sigma > SETTINGS.focal_log_sigma else (1.0,)
-    )
-    for factor in factors:
+    is_sure = focal_log_sigma <= SETTINGS.focal_log_sigma
+    for factor in (1.0,) if is_sure else np.exp(np.linspace(-1.5, 1.5, 7) * focal_log_sigma):
         tried = replace(k, fx=k.fx * float(factor), fy=k.fy * float(factor))
         cv2.setRNGSeed(SETTINGS.seed)
         is_solved, turn, shift, inliers = cv2.solvePnPRansac(
             points,
             pixels,
-            _matrix(tried),
+            tried.matrix,
             None,
             iterationsCount=SETTINGS.ransac_turns,
             reprojectionError=SETTINGS.near_share * k.width,
@@ -166,6 +164,11 @@ def solve_camera(common: Sequence[CommonPoints], k: Intrinsics, focal_log_sigma:
     return _refine_camera(common, supported, tried, turn, shift, focal_log_sigma)
 
 
+def _stack(common: Sequence[CommonPoints]) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, "n 2"]]:
+    """All points on surfaces, and where the new photo shows them."""
+    return np.vstack([c.points for c in common]), np.vstack([c.new_px for c in common])
+
+
 def _refine_camera(
     common: Sequence[CommonPoints],
     supported: Sequence[Bool[np.ndarray, "_"]],
@@ -177,8 +180,7 @@ def _refine_camera(
     """The camera by epipolar lines and, much less, by the surfaces; robust against what is wrong of either."""
     thin = [max(1, len(c.points) * len(common) // SETTINGS.max_terms) for c in common]
     lines = [c.rows(np.arange(len(c.points)) % t == 0) for c, t in zip(common, thin, strict=True)]
-    surfaces = [c.rows(s) for c, s in zip(common, supported, strict=True)]
-    anchors = np.vstack([c.points for c in surfaces]), np.vstack([c.new_px for c in surfaces])
+    anchors = _stack([c.rows(s) for c, s in zip(common, supported, strict=True)])
     count = sum(len(c.points) for c in lines)
     # The surfaces' errors are alike over whole pieces of furniture: together they count as a few dozen points.
     weight = np.sqrt(SETTINGS.min_points / len(anchors[0]))
@@ -201,10 +203,7 @@ def _refine_camera(
 
 
 def _camera(k: Intrinsics, unknowns: Float[np.ndarray, "7"]) -> Camera:
-    T = np.eye(4)
-    T[:3, :3] = Rotation.from_rotvec(unknowns[:3]).as_matrix()
-    T[:3, 3] = unknowns[3:6]
-    focal = float(np.exp(unknowns[6]))
+    T, focal = rigid(rotation_from_vector(unknowns[:3]), unknowns[3:6]), float(np.exp(unknowns[6]))
     return Camera(replace(k, fx=k.fx * focal, fy=k.fy * focal), np.linalg.inv(T))
 
 
@@ -222,16 +221,12 @@ def sampson_px(
     T = np.linalg.inv(b.T_world_camera) @ a.T_world_camera
     x, y, z = T[:3, 3]
     E = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) @ T[:3, :3]
-    F = np.linalg.inv(_matrix(b.intrinsics)).T @ E @ np.linalg.inv(_matrix(a.intrinsics))
+    F = np.linalg.inv(b.intrinsics.matrix).T @ E @ np.linalg.inv(a.intrinsics.matrix)
     one = np.ones((len(pixels_a), 1))
     p, q = np.hstack([pixels_a, one]), np.hstack([pixels_b, one])
     line_b, line_a = p @ F.T, q @ F
     steep = (line_b[:, :2] ** 2).sum(axis=1) + (line_a[:, :2] ** 2).sum(axis=1)
     return (q * line_b).sum(axis=1) / np.sqrt(np.maximum(steep, 1e-18))
-
-
-def _matrix(k: Intrinsics) -> Float[np.ndarray, "3 3"]:
-    return np.array([[k.fx, 0.0, k.cx], [0.0, k.fy, k.cy], [0.0, 0.0, 1.0]])
 
 
 OWN = "/"
@@ -270,11 +265,7 @@ def camera_of(
     def depth_along(camera: Camera, pixels: Float[np.ndarray, "n 2"]) -> Float[np.ndarray, "n"]:
         return caster.first_hits(PinholeView(camera).rays(pixels)).distance.astype(np.float64)
 
-    placed = [
-        PlacedPhoto(_make_unposed_photo(p.name, p.inputs.photo, p.camera), p.camera)
-        for p in known
-        if p.camera is not None
-    ]
+    placed = [_place_photo(p.name, p.inputs.photo, p.camera) for p in known if p.camera is not None]
     given = photo.inputs.intrinsics
     focal = photo.inputs.photo.exif_focal_px if given is None else given.fx
     if focal is None:
@@ -284,5 +275,6 @@ def camera_of(
     return register_camera(UnposedPhoto(photo.name, photo.inputs.photo.rgb, focal), placed, depth_along, progress)
 
 
-def _make_unposed_photo(name: str, photo: Photo, camera: Camera) -> UnposedPhoto:
-    return UnposedPhoto(name, photo.rgb, camera.intrinsics.resize(photo.width, photo.height).fx)
+def _place_photo(name: str, photo: Photo, camera: Camera) -> PlacedPhoto:
+    focal = camera.intrinsics.resize(photo.width, photo.height).fx
+    return PlacedPhoto(UnposedPhoto(name, photo.rgb, focal), camera)

@@ -89,16 +89,14 @@ def align_to_room(
         progress: reports and cancellation.
     """
     readings = []
-    for number, photo in enumerate(photos):
+    for photo, part in zip(photos, progress.parts(len(photos)), strict=True):
         given = replace(photo.inputs, intrinsics=photo.camera.intrinsics)
-        part = progress.part(number / len(photos), (number + 1) / len(photos))
         artefacts = evaluate(choose(given), {"given": given}, ("camera", "objects"), Runner(None), part)
         k = photo.camera.intrinsics
-        readings.append(
-            PhotoReading(photo.camera, artefacts["camera"], gather(artefacts["objects"], k.width, k.height))
-        )
-    found_alignment = align(readings, metric=metric, up=up)
-    return tuple(replace(p, camera=found_alignment.camera(p.camera)) for p in photos), found_alignment
+        observations = gather(artefacts["objects"], k.width, k.height)
+        readings.append(PhotoReading(photo.camera, artefacts["camera"], observations))
+    found = align(readings, metric=metric, up=up)
+    return tuple(replace(p, camera=found.camera(p.camera)) for p in photos), found
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,10 +158,8 @@ def build_room(
     """
     if not photos:
         raise InputError("there is no photo with a known camera")
-    read = []
-    for number, photo in enumerate(photos):
-        part = progress.part(0.2 * number / len(photos), 0.2 * (number + 1) / len(photos))
-        read.append(read_photo(photo, choose(photo.inputs), part))
+    parts = progress.part(0.0, 0.2).parts(len(photos))
+    read = [read_photo(photo, choose(photo.inputs), part) for photo, part in zip(photos, parts, strict=True)]
     room_photos = [estimate_room_photo(r) for r in read]
     joined = join_objects(room_photos, progress.part(0.2, 0.45))
     tracks = tuple(with_agreeing_boxes(t, room_photos) for t in joined)
@@ -198,12 +194,10 @@ def build_joined_scene(
     single = len(read) == 1
     best = [max(t.inliers, key=lambda b: (visibility_score(room_photos[b[0]], b[1]), -b[0]))[0] for t in tracks]
     used = sorted({0, *best})
-    built: dict[int, Built] = {}
-    for number, index in enumerate(used):
-        part = progress.part(0.65 * number / len(used), 0.65 * (number + 1) / len(used))
-        built[index] = build_photo_scene(
-            read[index], index, tracks, library, part, room=rooms[index], plane_pictures=single
-        )
+    built = {
+        k: build_photo_scene(read[k], k, tracks, library, part, room=rooms[k], plane_pictures=single)
+        for k, part in zip(used, progress.part(0.0, 0.65).parts(len(used)), strict=True)
+    }
     scene, textures = _merge_scenes(read, built, tracks, best)
     report = None
     if scene.objects:
@@ -211,23 +205,16 @@ def build_joined_scene(
         scene = set_metrics(scene, report.after)
     if not single:
         progress.report(0.9, "pictures of floor and walls")
-        placed = [to_placed_picture(r, _ids_in(tracks, index)) for index, r in enumerate(read)]
+        placed = [to_placed_picture(r, ids_in(tracks, index)) for index, r in enumerate(read)]
         pictures = room_pictures(scene, placed, library)
         planes = tuple(replace(p, texture=p.id if p.id in pictures else None) for p in scene.architecture.planes)
         scene, textures = replace(scene, architecture=Architecture(planes)), {**textures, **pictures}
     progress.report(1.0, "done")
-    seen = tuple(_visible_objects(tracks, index, r, scene) for index, r in enumerate(read))
-    return JoinedRoom(scene, tracks, built[0], textures, report, built[0].notes, seen)
-
-
-def _visible_objects(tracks: Sequence[Track], index: int, read: ReadPhoto, scene: Scene) -> tuple[tuple[str, Box], ...]:
-    """Ids and boxes of the scene's objects that a photo shows."""
-    return tuple(
-        (track_name(number), read.objects[box].box)
-        for number, track in enumerate(tracks)
-        for photo, box in track.boxes
-        if photo == index and scene.has_object(track_name(number))
+    seen = tuple(
+        tuple((name, r.objects[box].box) for box, name in ids_in(tracks, index).items() if scene.has_object(name))
+        for index, r in enumerate(read)
     )
+    return JoinedRoom(scene, tracks, built[0], textures, report, built[0].notes, seen)
 
 
 def read_photo(photo: PosedInputs, stages: Stages, progress: Progress) -> ReadPhoto:
@@ -275,7 +262,7 @@ def track_name(number: int) -> str:
     return f"object-{number + 1}"
 
 
-def _ids_in(tracks: Sequence[Track], index: int) -> dict[int, str]:
+def ids_in(tracks: Sequence[Track], index: int) -> dict[int, str]:
     """The ids of a photo's objects, by box."""
     return {
         box: track_name(number) for number, track in enumerate(tracks) for photo, box in track.boxes if photo == index
@@ -285,8 +272,7 @@ def _ids_in(tracks: Sequence[Track], index: int) -> dict[int, str]:
 def to_placed_picture(read: ReadPhoto, ids: Mapping[int, str]) -> PlacedPicture:
     """A read photo with the ids that its objects have in the scene, by box."""
     named = tuple(replace(item, id=ids.get(k, f"mark-{k}")) for k, item in enumerate(read.objects))
-    k = read.posed.camera.intrinsics.resize(read.inputs.photo.width, read.inputs.photo.height)
-    camera = Camera(k, read.posed.camera.T_world_camera)
+    camera = read.posed.camera.resize(read.inputs.photo.width, read.inputs.photo.height)
     return PlacedPicture(read.inputs, named, camera, read.stages.filler)
 
 
@@ -336,9 +322,8 @@ def _room_of_all(
 ) -> tuple[GivenRoom, ...]:
     """The room of all photos, for each photo in its own world."""
     seen = []
-    for index, r in enumerate(read):
-        part = progress.part(index / len(read), (index + 1) / len(read))
-        objects = to_placed_picture(r, _ids_in(tracks, index)).objects
+    for index, (r, part) in enumerate(zip(read, progress.parts(len(read)), strict=True)):
+        objects = to_placed_picture(r, ids_in(tracks, index)).objects
         seen.append(SeenRoom(room_alone(r, index, tracks, part), r.posed.camera, objects))
     standing = [_footprint(t.cuboid) for t in tracks if t.kind.mount == "floor" and len(t.inliers) > 1]
     hanging = [t for t in tracks if _hangs(t, alone)]
@@ -346,17 +331,23 @@ def _room_of_all(
     # A wall that another photo looks past stays where something hangs on it.
     rooms_alone = (room_alone(r, index, _tracks_alone(index, alone[index])) for index, r in enumerate(read))
     whole_room = room_holding(joint_room(seen, standing), rooms_alone, [t.cuboid for t in hanging])
-    room, passages = with_open_doorways(walls_at_mounted(whole_room, mounted), seen)
-    worlds = [move_to_room(Scene(architecture=room), np.linalg.inv(r.T_room_photo)).architecture for r in read]
-    return tuple(GivenRoom(world, marks) for world, marks in zip(worlds, passages, strict=True))
+    return rooms_in_photos(walls_at_mounted(whole_room, mounted), seen, read)
+
+
+def rooms_in_photos(room: Architecture, seen: Sequence[SeenRoom], read: Sequence[ReadPhoto]) -> tuple[GivenRoom, ...]:
+    """The room with the open doorways that photos point at, for each photo in its own world."""
+    whole, passages = with_open_doorways(room, seen)
+    return tuple(GivenRoom(room_in_photo(whole, r), marks) for r, marks in zip(read, passages, strict=True))
+
+
+def room_in_photo(room: Architecture, read: ReadPhoto) -> Architecture:
+    """The room in a photo's own world."""
+    return move_to_room(Scene(architecture=room), np.linalg.inv(read.T_room_photo)).architecture
 
 
 def _tracks_alone(index: int, photo: RoomPhoto) -> tuple[Track, ...]:
     """What a photo says of its objects by itself, as objects that no other photo shows."""
-    return tuple(
-        Track(((index, box),), one.kind, JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0))
-        for box, one in enumerate(photo.alone)
-    )
+    return tuple(Track(((index, box),), one.kind, one.cuboid) for box, one in enumerate(photo.alone))
 
 
 def _hangs(track: Track, alone: Sequence[RoomPhoto]) -> bool:
@@ -373,9 +364,9 @@ def _footprint(cuboid: JointCuboid) -> Float[np.ndarray, "4 2"]:
 
 def _with_joint_cuboids(read: ReadPhoto, index: int, tracks: Sequence[Track]) -> Stages:
     """A photo's stages with everything that is known given."""
-    named = {box: number for number, track in enumerate(tracks) for photo, box in track.boxes if photo == index}
-    objects = tuple(replace(item, id=track_name(named[k])) for k, item in enumerate(read.objects))
-    cuboids = tuple(_cuboid(track_name(named[k]), tracks[named[k]].cuboid, read) for k in range(len(objects)))
+    names, joint = ids_in(tracks, index), {track_name(k): track.cuboid for k, track in enumerate(tracks)}
+    objects = tuple(replace(item, id=names[k]) for k, item in enumerate(read.objects))
+    cuboids = tuple(_cuboid(o.id, joint[o.id], read) for o in objects)
     return replace(
         read.stages,
         camera=GivenCamera(read.camera),
@@ -414,18 +405,13 @@ def _merge_scenes(
         if source is None:
             continue  # nothing of the library is like it, or it is an open doorway
         item = scenes[source].object(name)
-        in_main = main.object(name) if main.has_object(name) else None
         if len(track.inliers) > 1:
             item = filling(item, track.cuboid)
         if item.category in OPENING_CATEGORIES:
             item = set_into_wall(item)
-        box = None if in_main is None else in_main.box_px
-        objects.append(replace(item, box_px=box, mask_id=None if in_main is None else in_main.mask_id))
-        textures |= {
-            m.texture: built[source].textures[m.texture]
-            for m in item.photo_materials
-            if m.texture is not None and m.texture in built[source].textures
-        }
+        box, mask = (main.object(name).box_px, main.object(name).mask_id) if main.has_object(name) else (None, None)
+        objects.append(replace(item, box_px=box, mask_id=mask))
+        textures |= textures_of(item, built[source])
         edge = scenes[source].support_of(name)
         if edge is not None:
             supports.append(edge_in_room(edge, scenes[source], main.architecture))
@@ -434,3 +420,9 @@ def _merge_scenes(
     scene = containing_room(replace(main, objects=tuple(objects), supports=acyclic(edges)))
     check_scene(scene)
     return scene, textures
+
+
+def textures_of(item: SceneObject, built: Built) -> dict[str, UInt8[np.ndarray, "_ _ 3"]]:
+    """The pictures of a build that an object's materials name."""
+    names = (m.texture for m in item.photo_materials if m.texture is not None)
+    return {name: built.textures[name] for name in names if name in built.textures}

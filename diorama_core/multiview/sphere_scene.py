@@ -24,16 +24,16 @@ from diorama_core.geometry.sphere import directions, level_axes, perspective, sa
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category, is_furniture
 from diorama_core.multiview.joining import RoomPhoto, Track
-from diorama_core.multiview.joint_fit import JointCuboid
-from diorama_core.multiview.joint_room import SeenRoom, with_open_doorways
-from diorama_core.multiview.one_scene import move_to_room
+from diorama_core.multiview.joint_room import SeenRoom
 from diorama_core.multiview.rooms import (
     JoinedRoom,
     PosedInputs,
     ReadPhoto,
     build_joined_scene,
     estimate_room_photo,
+    ids_in,
     read_photo,
+    rooms_in_photos,
     to_placed_picture,
     track_name,
 )
@@ -58,7 +58,7 @@ from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import Stages
 from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
-from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Scene, SceneObject, yaw_rotation
+from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, SceneObject, rigid, yaw_rotation
 
 LEVEL_WIDTH_PX = 1024
 """Of the picture in which the room is looked for."""
@@ -99,8 +99,7 @@ class SphereScene:
         Args:
             inputs: the 360 degree photo; without boxes it gets those of what was found.
         """
-        photo, T = inputs.photo, np.eye(4)
-        T[:3, :3], T[:3, 3] = self.R_room_sphere, self.views[0].camera.position
+        photo, T = inputs.photo, rigid(self.R_room_sphere, self.views[0].camera.position)
         known = {o.id: o for o in self.room.scene.objects}
         things = [_relabel(thing, known[name]) if name in known else thing for thing, name in self.things]
         found = picture_boxes(things, (photo.width, photo.height), self.R_room_sphere)
@@ -172,20 +171,17 @@ def _relabel(thing: SphereBox, item: SceneObject) -> SphereBox:
 def occluders(things: Sequence[SphereBox]) -> tuple[SphereThing, ...]:
     """Extents that hide the room's borders; of what hangs on a wall, which ends at them, only the middle."""
     hiding = []
-    for thing in things:
-        kind = thing.labelled.category
+    for t in things:
+        kind = t.labelled.category
         inset = 2 * ROOM.margin_rad if category(kind).mount == "wall" else 0.0
-        hiding.append(
-            SphereThing(thing.azimuth, thing.half_width, thing.low + inset, thing.high - inset, is_furniture(kind))
-        )
+        hiding.append(SphereThing(t.azimuth, t.half_width, t.low + inset, t.high - inset, is_furniture(kind)))
     return tuple(hiding)
 
 
 def _track(seen: tuple[tuple[int, int], ...], photos: Sequence[RoomPhoto]) -> Track:
     """One thing, as the view shows it that shows it best; `seen` are its views and boxes, that one first."""
     one = photos[seen[0][0]].alone[seen[0][1]]
-    cuboid = JointCuboid(one.centre, one.yaw_rad, one.size_m, 0.0)
-    return Track(tuple(sorted(seen)), one.kind, cuboid, tuple(seen[1:]))
+    return Track(tuple(sorted(seen)), one.kind, one.cuboid, seen[1:])
 
 
 def _degrees(view: SphereView) -> int:
@@ -198,9 +194,8 @@ def _detect_objects(
 ) -> tuple[SphereBox, ...]:
     """Objects that a detector finds in the views."""
     rows = []
-    for number, (view, photo) in enumerate(pictures):
+    for (view, photo), part in zip(pictures, progress.parts(len(pictures)), strict=True):
         given = Inputs(photo, intrinsics=view.intrinsics)
-        part = progress.part(number / len(pictures), (number + 1) / len(pictures))
         rows.append((view, evaluate(choose(given), {"given": given}, ("inputs",), Runner(None), part)["inputs"].boxes))
     return merge_detections(rows)
 
@@ -219,8 +214,7 @@ def _read(
     first = max(range(len(posed)), key=lambda n: (counts[n], len(posed[n].inputs.boxes)))
     order = [*range(first, len(posed)), *range(first)]
     read = []
-    for number, index in enumerate(order):
-        part = progress.part(number / len(order), (number + 1) / len(order))
+    for index, part in zip(order, progress.parts(len(order)), strict=True):
         stages = choose(posed[index].inputs)
         read.append(read_photo(posed[index], replace(stages, detection=None), part))
     place = {index: number for number, index in enumerate(order)}
@@ -271,13 +265,9 @@ def sphere_planes(room: SphereRoom, height_m: float) -> Architecture:
 
 def _rooms(room: Architecture, read: Sequence[ReadPhoto], tracks: Sequence[Track]) -> tuple[GivenRoom, ...]:
     """The room, for each view in its own world, with the open doorways that the view shows best."""
-    seen = []
-    for index, r in enumerate(read):
-        ids = {b: track_name(n) for n, track in enumerate(tracks) for v, b in track.boxes if v == index}
-        seen.append(SeenRoom(room, r.posed.camera, to_placed_picture(r, ids).objects))
-    whole, passages = with_open_doorways(room, seen)
-    worlds = [move_to_room(Scene(architecture=whole), np.linalg.inv(r.T_room_photo)).architecture for r in read]
-    return tuple(GivenRoom(world, marks) for world, marks in zip(worlds, passages, strict=True))
+    marked = (to_placed_picture(r, ids_in(tracks, index)).objects for index, r in enumerate(read))
+    seen = [SeenRoom(room, r.posed.camera, objects) for r, objects in zip(read, marked, strict=True)]
+    return rooms_in_photos(room, seen, read)
 
 
 @dataclass(frozen=True)
@@ -358,13 +348,8 @@ def _levelling_rotation(lines: SphereLines) -> Float[np.ndarray, "3 3"]:
     tilts = tilts[np.linalg.norm(tilts, axis=1) <= reach[-1]]
     ups = np.column_stack([np.sin(tilts), np.sqrt(1 - (np.sin(tilts) ** 2).sum(axis=1))])
     votes = np.exp(-0.5 * (ups @ lines.normals.T / np.sin(np.deg2rad(FRAME_SETTINGS.coarse_deg))) ** 2) @ lines.weights
-    votes -= (
-        FRAME_SETTINGS.level_weight
-        * lines.weights.sum()
-        * 0.5
-        * (np.rad2deg(tilts) ** 2).sum(axis=1)
-        / FRAME_SETTINGS.level_deg**2
-    )
+    weight = FRAME_SETTINGS.level_weight * lines.weights.sum()
+    votes -= weight * 0.5 * (np.rad2deg(tilts) ** 2).sum(axis=1) / FRAME_SETTINGS.level_deg**2
     up = ups[int(np.argmax(votes))]
     turn = np.cross(up, [0.0, 0.0, 1.0])
     return rotation_from_vector(turn * (np.arcsin(np.linalg.norm(turn)) / max(float(np.linalg.norm(turn)), 1e-12)))

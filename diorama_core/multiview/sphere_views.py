@@ -17,7 +17,7 @@ from diorama_core.geometry.projection import box_iou
 from diorama_core.geometry.sphere import directions_at, level_axes, perspective, sphere_pixels
 from diorama_core.library.taxonomy import broad
 from diorama_core.multiview.rooms import PosedInputs
-from diorama_core.scene.types import Camera, Intrinsics
+from diorama_core.scene.types import Camera, Intrinsics, rigid
 
 
 @dataclass(frozen=True)
@@ -98,11 +98,15 @@ def _across_seam(boxes: Sequence[LabelledBox], width: int) -> tuple[LabelledBox,
     for first in boxes:
         for second in boxes:
             a, b = first.box, second.box
-            meet = (
-                abs(a[2] - width) <= near and b[0] <= near and first.category == second.category and first is not second
-            )
+            meet = abs(a[2] - width) <= near and b[0] <= near and first is not second
             shared = min(a[3], b[3]) - max(a[1], b[1])
-            if meet and shared > 0.5 * min(a[3] - a[1], b[3] - b[1]) and first in left and second in left:
+            if (
+                meet
+                and first.category == second.category
+                and shared > 0.5 * min(a[3] - a[1], b[3] - b[1])
+                and first in left
+                and second in left
+            ):
                 whole = (a[0], min(a[1], b[1]), b[2] + width, max(a[3], b[3]))
                 left = [x for x in left if x is not first and x is not second] + [replace(first, box=whole)]
     return tuple(left)
@@ -142,9 +146,7 @@ class SphereView:
 
     def camera(self, height_m: float) -> Camera:
         """Camera of the view in the room, the floor at 0 and the sphere's middle at the origin of the plan."""
-        T = np.eye(4)
-        T[:3, :3], T[2, 3] = level_axes(self.azimuth), height_m
-        return Camera(self.intrinsics, T)
+        return Camera(self.intrinsics, rigid(level_axes(self.azimuth), np.array([0.0, 0.0, height_m])))
 
     def project(self, thing: SphereBox) -> LabelledBox | None:
         """A thing's box in the view; None where too little of it is there."""

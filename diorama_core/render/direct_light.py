@@ -11,6 +11,7 @@ from jaxtyping import Float, Float32
 from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.geometry.vectors import dot, unit
 
+Vectors = Float32[np.ndarray, "n 3"]
 SUN_BLUR = 0.012
 """Radius of the sun over its distance; about twice the real one, as haze makes it."""
 LIFT_M = 2e-3
@@ -23,13 +24,8 @@ NEAREST_M = 0.08
 class DirectLight(Protocol):
     """A source of light that reaches a place or is held off."""
 
-    def falling(
-        self,
-        points: Float32[np.ndarray, "n 3"],
-        normals: Float32[np.ndarray, "n 3"],
-        sample: Float32[np.ndarray, "n 2"],
-    ) -> Float32[np.ndarray, "n 3"]:
-        """Irradiance of places; `sample` (0 to 1) chooses the point of the source.
+    def falling(self, points: Vectors, normals: Vectors, sample: Float32[np.ndarray, "n 2"]) -> Vectors:
+        """Irradiance of places.
 
         Args:
             points: world, metres.
@@ -50,19 +46,8 @@ class SunLight:
     blockers: RayScene
     """Everything that holds it off, walls and ceiling with their openings too."""
 
-    def falling(
-        self,
-        points: Float32[np.ndarray, "n 3"],
-        normals: Float32[np.ndarray, "n 3"],
-        sample: Float32[np.ndarray, "n 2"],
-    ) -> Float32[np.ndarray, "n 3"]:
-        """Irradiance of places; see `DirectLight`.
-
-        Args:
-            points: world, metres.
-            normals: unit, toward the light's side.
-            sample: 0 to 1, chooses the point of the source.
-        """
+    def falling(self, points: Vectors, normals: Vectors, sample: Float32[np.ndarray, "n 2"]) -> Vectors:
+        """Irradiance of places; see `DirectLight`."""
         across = unit(np.cross(self.direction, [0.3, 0.5, 0.81]))
         disc = SUN_BLUR * (2 * sample - 1) @ np.stack([across, np.cross(self.direction, across)]).astype(np.float32)
         toward = (self.direction.astype(np.float32) + disc).astype(np.float32)
@@ -82,19 +67,8 @@ class LampLight:
     blockers: RayScene
     """Everything that holds it off, but for the lamp itself: its shade lets light through."""
 
-    def falling(
-        self,
-        points: Float32[np.ndarray, "n 3"],
-        normals: Float32[np.ndarray, "n 3"],
-        sample: Float32[np.ndarray, "n 2"],
-    ) -> Float32[np.ndarray, "n 3"]:
-        """Irradiance of places; see `DirectLight`.
-
-        Args:
-            points: world, metres.
-            normals: unit, toward the light's side.
-            sample: 0 to 1, chooses the point of the source.
-        """
+    def falling(self, points: Vectors, normals: Vectors, sample: Float32[np.ndarray, "n 2"]) -> Vectors:
+        """Irradiance of places; see `DirectLight`."""
         up, around = 2 * sample[:, :1] - 1, 2 * np.pi * sample[:, 1:]
         level = np.sqrt(1 - up * up)
         ball = np.concatenate([level * np.cos(around), level * np.sin(around), up], axis=1)
@@ -108,11 +82,7 @@ class LampLight:
 
 
 def _visible_strength(
-    strength: Float32[np.ndarray, "n"],
-    origins: Float32[np.ndarray, "n 3"],
-    toward: Float32[np.ndarray, "n 3"],
-    blockers: RayScene,
-    far: float,
+    strength: Float32[np.ndarray, "n"], origins: Vectors, toward: Vectors, blockers: RayScene, far: float
 ) -> Float32[np.ndarray, "n"]:
     """Strength of light, 0 where something stands between a place and the light, up to `far` times the ray."""
     lit = np.flatnonzero(strength > 0)

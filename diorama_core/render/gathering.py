@@ -66,7 +66,7 @@ def gather_light(
 def _noisy(world: World, blockers: RayScene, grid: Grid, rows: slice, light: Lighting, effort: Effort) -> Light:
     """Light of some rows, every pixel with its own share of the samples."""
     is_hit = grid.found
-    spots = Spots(grid.points[is_hit], grid.normals[is_hit], grid.flat_normals[is_hit], grid.photographed[is_hit])
+    spots = _spots(grid, is_hit)
     pixels = np.argwhere(is_hit) + np.array([rows.start, 0])
     noisy = np.zeros(grid.points.shape, np.float32)
     noisy[is_hit] = np.add(*irradiance(world, blockers, spots, pixels, light, effort))
@@ -118,6 +118,9 @@ def _alone(
     world: World, blockers: RayScene, grid: Grid, pixels: Int[np.ndarray, "n 2"], light: Lighting
 ) -> Float32[np.ndarray, "n 3"]:
     """Light of pixels that no neighbour tells."""
-    at = (pixels[:, 0], pixels[:, 1])
-    spots = Spots(grid.points[at], grid.normals[at], grid.flat_normals[at], grid.photographed[at])
+    spots = _spots(grid, (pixels[:, 0], pixels[:, 1]))
     return np.add(*irradiance(world, blockers, spots, None, light, ALONE))
+
+
+def _spots(grid: Grid, at: Bool[np.ndarray, "h w"] | tuple[np.ndarray, np.ndarray]) -> Spots:
+    return Spots(grid.points[at], grid.normals[at], grid.flat_normals[at], grid.photographed[at])

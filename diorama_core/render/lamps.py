@@ -85,14 +85,13 @@ def _light_shade(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
     shade = shade_of(surfaces)
     if shade is None:
         return surfaces
-    red, green, blue = (float(SHADE_GLOW * c) for c in WARM)
-    glowing = replace(shade, material=replace(shade.material, emissive=(red, green, blue)))
-    return tuple(glowing if s is shade else s for s in surfaces)
+    return tuple(_with_glow(s, SHADE_GLOW * np.array(WARM)) if s is shade else s for s in surfaces)
 
 
 def _glowing(surfaces: tuple[Surface, ...], colour: Float[np.ndarray, "3"]) -> tuple[Surface, ...]:
+    return tuple(_with_glow(s, colour) if any(s.material.emissive) else s for s in surfaces)
+
+
+def _with_glow(surface: Surface, colour: Float[np.ndarray, "3"]) -> Surface:
     red, green, blue = (float(c) for c in colour)
-    return tuple(
-        replace(s, material=replace(s.material, emissive=(red, green, blue))) if any(s.material.emissive) else s
-        for s in surfaces
-    )
+    return replace(surface, material=replace(surface.material, emissive=(red, green, blue)))

@@ -15,7 +15,7 @@ from jaxtyping import Bool, Float, Float32, Int
 
 from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.geometry.vectors import dot, facing, unit
-from diorama_core.render.direct_light import DirectLight
+from diorama_core.render.direct_light import DirectLight, Vectors
 from diorama_core.render.world import World
 from diorama_core.scene.types import RoomLight
 
@@ -60,10 +60,10 @@ class Effort:
 class Spots:
     """Places to gather light at."""
 
-    points: Float32[np.ndarray, "n 3"]
-    normals: Float32[np.ndarray, "n 3"]
+    points: Vectors
+    normals: Vectors
     """Smooth."""
-    flat_normals: Float32[np.ndarray, "n 3"]
+    flat_normals: Vectors
     """Normals of the triangles."""
     photographed: Bool[np.ndarray, "n"] | None = None
     """Whose colours already hold the light of the room; None where no place's do."""
@@ -139,7 +139,7 @@ def irradiance(
     pixels: Int[np.ndarray, "n 2"] | None,
     light: Lighting,
     effort: Effort,
-) -> tuple[Float32[np.ndarray, "n 3"], Float32[np.ndarray, "n 3"]]:
+) -> tuple[Vectors, Vectors]:
     """Light that falls on places: from the window, and from everywhere else.
 
     Args:
@@ -152,10 +152,8 @@ def irradiance(
         effort: Rays per place.
     """
     sharing = 1 if pixels is None else TILE * TILE
-    if pixels is None:
-        lane = np.zeros(len(spots.points), np.int64)
-    else:
-        lane = _ORDER[(pixels[:, 0] % TILE) * TILE + pixels[:, 1] % TILE]
+    at = np.zeros((len(spots.points), 2), np.int64) if pixels is None else pixels % TILE
+    lane = _ORDER[at[:, 0] * TILE + at[:, 1]]
     origins = spots.points + spots.flat_normals * np.float32(1e-3 * max(light.reach_m, 0.2))
     frames = _tangent_frames(spots.normals)
     window, around = (np.zeros((len(lane), 3), np.float32) for _ in range(2))
@@ -171,9 +169,7 @@ def irradiance(
     return window / max(effort.window_rays, 1), around / max(effort.sky_rays, 1)
 
 
-def irradiance_without_shadows(
-    points: Float32[np.ndarray, "n 3"], normals: Float32[np.ndarray, "n 3"], light: Lighting
-) -> Float32[np.ndarray, "n 3"]:
+def irradiance_without_shadows(points: Vectors, normals: Vectors, light: Lighting) -> Vectors:
     """Light on places as if nothing stood in the way but of the sun and lamps: what bounced light is reckoned from."""
     to_window = light.window_centre.astype(np.float32) - points
     squared = dot(to_window, to_window)
@@ -203,9 +199,7 @@ def _from_window(
     return key[:, None] * light.window_irradiance.astype(np.float32)
 
 
-def _key_strength(
-    ray: Float32[np.ndarray, "n 3"], squared: Float32[np.ndarray, "n"], light: Lighting
-) -> Float32[np.ndarray, "n"]:
+def _key_strength(ray: Vectors, squared: Float32[np.ndarray, "n"], light: Lighting) -> Float32[np.ndarray, "n"]:
     """What a surface facing the window would get along rays to it (of squared length), over the rays' length."""
     length = np.sqrt(squared)
     if light.inward is None:
@@ -216,12 +210,8 @@ def _key_strength(
 
 
 def _from_around(
-    world: World,
-    origins: np.ndarray,
-    direction: Float32[np.ndarray, "n 3"],
-    light: Lighting,
-    photographed: Bool[np.ndarray, "n"] | None,
-) -> Float32[np.ndarray, "n 3"]:
+    world: World, origins: Vectors, direction: Vectors, light: Lighting, photographed: Bool[np.ndarray, "n"] | None
+) -> Vectors:
     """Radiance along one direction each: the surroundings, or the colour of what is near.
 
     Photographed walls hold nothing off one another: the photo shows them in the light that the room leaves.

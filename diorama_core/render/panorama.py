@@ -21,7 +21,7 @@ from diorama_core.render.picture import light_of, looking_along
 from diorama_core.render.raycast import PinholeView
 from diorama_core.render.shading import shoot
 from diorama_core.render.world import scene_world
-from diorama_core.scene.types import Camera, Intrinsics, Scene
+from diorama_core.scene.types import Camera, Intrinsics, Scene, rigid
 
 WIDTH_PX = 512
 EFFORT = Effort(window_rays=2, sky_rays=4)
@@ -92,8 +92,6 @@ def middle(scene: Scene) -> Float[np.ndarray, "3"]:
 
 
 def _face(centre: Float[np.ndarray, "3"], forward: Float[np.ndarray, "3"], side: int) -> Camera:
-    T = np.eye(4)
     up = np.array([0.0, 1.0, 0.0]) if forward[2] else np.array([0.0, 0.0, 1.0])
-    T[:3, :3], T[:3, 3] = looking_along(forward, up), centre
     focal = 0.5 * side / OVERLAP
-    return Camera(Intrinsics(side, side, focal, focal, side / 2, side / 2), T)
+    return Camera(Intrinsics(side, side, focal, focal, side / 2, side / 2), rigid(looking_along(forward, up), centre))

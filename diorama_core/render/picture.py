@@ -22,7 +22,7 @@ from diorama_core.render.shading import Shot, shoot
 from diorama_core.render.world import World, scene_world
 from diorama_core.scene.frames import UP_WORLD
 from diorama_core.scene.support import descendants
-from diorama_core.scene.types import Camera, Intrinsics, Scene
+from diorama_core.scene.types import Camera, Intrinsics, Scene, rigid
 from diorama_core.workers import map_threads
 
 DEFAULT_SIZE = (1024, 768)
@@ -189,8 +189,7 @@ def framing_camera(
         low, high = _tangent_fit(local[:, axis], local[:, 2], float(half[axis]))
         position[axis] = low
         position[2] = min(position[2], high) if axis else high
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = R, np.mean(points, axis=0) + R @ position
+    T = rigid(R, np.mean(points, axis=0) + R @ position)
     return Camera(Intrinsics(width, height, focal, focal, width / 2, height / 2), T)
 
 
@@ -205,9 +204,7 @@ def _looking_camera(view: str, width: int, height: int) -> Camera:
     if not sound:
         raise InputError(f"{view!r} is no view; give two points in metres, such as look:0,-2,1.6:0,2,0.8")
     R = looking_along(forward, UP_WORLD if np.abs(forward[:2]).max() > 1e-6 else np.array([0.0, 1.0, 0.0]))
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = R, eye
-    return Camera(Intrinsics.from_fov(width, height, LOOK_FOV_RAD), T)
+    return Camera(Intrinsics.from_fov(width, height, LOOK_FOV_RAD), rigid(R, eye))
 
 
 def _tangent_fit(across: np.ndarray, along: np.ndarray, slope: float) -> tuple[float, float]:
@@ -226,7 +223,7 @@ def _photo_camera(scene: Scene, size: tuple[int, int] | None) -> Camera:
         shrink = min(1.0, LARGEST_DEFAULT_PX / max(k.width, k.height))
         size = (max(1, round(k.width * shrink)), max(1, round(k.height * shrink)))
     if abs(size[0] / k.width - size[1] / k.height) * max(k.width, k.height) < 1.0:
-        return Camera(k.resize(*size), scene.camera.T_world_camera)
+        return scene.camera.resize(*size)
     s = min(size[0] / k.width, size[1] / k.height)
     cx, cy = (size[0] - s * k.width) / 2 + s * k.cx, (size[1] - s * k.height) / 2 + s * k.cy
     return Camera(Intrinsics(size[0], size[1], s * k.fx, s * k.fy, cx, cy), scene.camera.T_world_camera)
@@ -238,9 +235,7 @@ def _parallel(
     local = corners @ R_world_camera
     low, high = local.min(axis=0), local.max(axis=0)
     extent = np.maximum(high - low, 0.1)
-    T = np.eye(4)
-    T[:3, :3] = R_world_camera
-    T[:3, 3] = R_world_camera @ np.array([*(low + high)[:2] / 2, low[2] - 1.0])
+    T = rigid(R_world_camera, R_world_camera @ np.array([*(low + high)[:2] / 2, low[2] - 1.0]))
     return OrthographicView(T, width, height, float(max(extent[0] / width, extent[1] / height)) * 1.08)
 
 
@@ -269,10 +264,8 @@ def _viewer_direction(view: View, point_world: Float[np.ndarray, "3"]) -> Float[
 
 def _ids_seen_from_behind(scene: Scene, view: View) -> frozenset[str]:
     """Ids of planes seen from behind, and of everything that hangs on them."""
-    hidden: set[str] = set()
-    for plane in scene.architecture.planes:
-        if plane.normal @ _viewer_direction(view, plane.centre) < -1e-6:
-            hidden.add(plane.id)
+    planes = scene.architecture.planes
+    hidden = {p.id for p in planes if p.normal @ _viewer_direction(view, p.centre) < -1e-6}
     for edge in scene.supports:
         if edge.parent in hidden and edge.relation == "mounted on":
             hidden |= {edge.child, *descendants(scene, edge.child)}

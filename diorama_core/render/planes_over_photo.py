@@ -29,7 +29,7 @@ def planes_over_photo(
         camera: The photo's camera.
     """
     height, width = photo.shape[:2]
-    labels = _labels(planes, Camera(camera.intrinsics.resize(width, height), camera.T_world_camera))
+    labels = _labels(planes, camera.resize(width, height))
     colours = np.array([*plane_colours(planes), (90, 90, 90)], dtype=np.float64)
     drawn = (1.0 - TINT) * photo + TINT * colours[labels]
     picture = drawn.astype(np.uint8)
@@ -58,7 +58,7 @@ def _labels(planes: tuple[Plane, ...], camera: Camera) -> Int[np.ndarray, "h w"]
     """Index of the plane in each pixel, -1 where none is."""
     k = camera.intrinsics
     share = min(1.0, CAST_SIDE_PX / max(k.width, k.height))
-    small = Camera(k.resize(max(1, round(k.width * share)), max(1, round(k.height * share))), camera.T_world_camera)
+    small = camera.resize(max(1, round(k.width * share)), max(1, round(k.height * share)))
     origin, rays = camera_rays(small)
     labels = cast_planes(origin, rays, planes)[1]
     full = cv2.resize(labels.astype(np.float32), (k.width, k.height), interpolation=cv2.INTER_NEAREST)

@@ -8,7 +8,7 @@ the object, its material and its texture coordinates. Rays are scaled so that th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -95,7 +95,8 @@ class MeshCaster:
     """Posed meshes to be seen from many cameras: depth, normals and instance ids without any shading.
 
     Args:
-        meshes: Each mesh with the 4x4 matrix (scale allowed) that maps its vertices to the world.
+        meshes: Each mesh with the 4x4 matrix (scale allowed) that maps its vertices to the world; the instance id
+            is the index in this sequence.
     """
 
     def __init__(self, meshes: Sequence[tuple[trimesh.Trimesh, Float[np.ndarray, "4 4"]]]) -> None:
@@ -135,17 +136,6 @@ class MeshCaster:
         return Buffers(depth, normals, self._instances(hits))
 
 
-def render_buffers(meshes: Sequence[tuple[trimesh.Trimesh, Float[np.ndarray, "4 4"]]], camera: Camera) -> Buffers:
-    """Depth, normals and instance ids of posed meshes seen by a camera.
-
-    Args:
-        meshes: Each mesh with the 4x4 matrix (scale allowed) that maps its vertices to the world; the instance id
-            is the index in this sequence.
-        camera: The pinhole camera; the buffers have its image size.
-    """
-    return MeshCaster(meshes).buffers(camera)
-
-
 @dataclass(frozen=True, eq=False)
 class Grid:
     """The first places of all pixels; 0 where nothing is seen (`instance` -1)."""
@@ -166,16 +156,7 @@ class Grid:
 
     def part(self, rows: slice, columns: slice = slice(None)) -> Grid:
         """Some rows and columns, as a view of the same memory."""
-        return Grid(
-            self.found[rows, columns],
-            self.points[rows, columns],
-            self.normals[rows, columns],
-            self.flat_normals[rows, columns],
-            self.instance[rows, columns],
-            self.depth[rows, columns],
-            self.pixel_m[rows, columns],
-            self.photographed[rows, columns],
-        )
+        return Grid(**{image.name: getattr(self, image.name)[rows, columns] for image in fields(self)})
 
 
 def pixel_footprint(view: View, depth: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "h w"]:

@@ -98,9 +98,9 @@ def _first_sight(world: World, view: View, rows: slice) -> _Band:
     rays = view.rays(pixel_centres(view.width, rows.stop, rows.start))
     hits = world.caster.first_hits(rays)
     is_hit = hits.is_hit
-    footprint_m = pixel_footprint(view, np.where(is_hit, hits.distance, 0).astype(np.float32))[is_hit]
-    places = world.places(rays[is_hit], hits.select(is_hit), footprint_m)
-    return _Band(is_hit, rays[is_hit], places, np.where(is_hit, hits.distance, 0).astype(np.float32))
+    depth = np.where(is_hit, hits.distance, 0).astype(np.float32)
+    places = world.places(rays[is_hit], hits.select(is_hit), pixel_footprint(view, depth)[is_hit])
+    return _Band(is_hit, rays[is_hit], places, depth)
 
 
 def _radiance(

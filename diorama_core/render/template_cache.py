@@ -58,7 +58,7 @@ class TemplateCache:
         """
         if not shape.content_hash:
             return render_templates(library.mesh(shape.id), grid, progress)
-        name = f"{shape.content_hash}-{grid.key}.{_FORMAT}.npz"
+        name = _name(shape, grid)
 
         def read_or_rendered() -> Templates:
             templates = self._read(name, grid)
@@ -71,7 +71,7 @@ class TemplateCache:
 
     def has(self, shape: Shape, grid: TemplateGrid = PAPER_GRID) -> bool:
         """Whether the views of a shape are on disk."""
-        return (self.folder / f"{shape.content_hash}-{grid.key}.{_FORMAT}.npz").exists()
+        return (self.folder / _name(shape, grid)).exists()
 
     def _read(self, name: str, grid: TemplateGrid) -> Templates | None:
         arrays = read_arrays(self.folder / name, "centre", "size", "depth", "normals", mark_use=True)
@@ -91,6 +91,10 @@ class TemplateCache:
             "normals": _png(templates.normal_codes),
         }
         write_arrays(self.folder / name, arrays, limit_bytes=self._limit_bytes)
+
+
+def _name(shape: Shape, grid: TemplateGrid) -> str:
+    return f"{shape.content_hash}-{grid.key}.{_FORMAT}.npz"
 
 
 def _default_limit() -> int:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from PIL import Image
 
@@ -14,10 +13,8 @@ from diorama_core.io.derived import derive
 from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.progress import SILENT, Progress
-from diorama_core.render.views import contact_sheet
-
-if TYPE_CHECKING:
-    from diorama_core.render.appearance import Paint
+from diorama_core.render.appearance import Paint
+from diorama_core.render.views import contact_sheet, render_shape
 
 _CACHE: LruCache[str, bytes] = LruCache(2048)
 _VERSION = 1
@@ -25,12 +22,7 @@ _VERSION = 1
 
 
 def thumbnail(
-    library: ShapeLibrary,
-    shape_id: str,
-    size: int = 160,
-    folder: Path | None = None,
-    *,
-    paint: Paint = (None, None),
+    library: ShapeLibrary, shape_id: str, size: int = 160, folder: Path | None = None, *, paint: Paint = (None, None)
 ) -> bytes:
     """A square PNG of a shape on a transparent background.
 
@@ -59,11 +51,7 @@ def _whole_png(data: bytes) -> bytes:
 
 
 def shape_sheet(
-    library: ShapeLibrary,
-    shapes: Sequence[Shape],
-    size: int = 240,
-    columns: int = 6,
-    progress: Progress = SILENT,
+    library: ShapeLibrary, shapes: Sequence[Shape], size: int = 240, columns: int = 6, progress: Progress = SILENT
 ) -> Image.Image:
     """A contact sheet of shapes, their pictures taken from the kept ones or rendered now.
 
@@ -86,8 +74,6 @@ def shape_sheet(
 
 
 def _render(library: ShapeLibrary, shape_id: str, size: int, paint: Paint = (None, None)) -> bytes:
-    from diorama_core.render.views import render_shape  # a second to load, and pictures that are kept do without
-
     buffer = io.BytesIO()
     Image.fromarray(render_shape(library, shape_id, (size, size), paint=paint)).save(buffer, "PNG", optimize=True)
     return buffer.getvalue()

@@ -93,7 +93,7 @@ def render_shape(
     light = studio(np.stack([-half, half]), -camera.camera.T_world_camera[:3, 2])
     shot = shoot(alone, alone.shadow_caster(), camera, light, STUDIO_EFFORT)
     hung = category(shape.category).mount in ("wall", "ceiling")
-    shadow = np.zeros(shot.coverage.shape, np.float32) if hung else _shadow(shape, alone, light, camera, STUDIO_EFFORT)
+    shadow = np.zeros(shot.coverage.shape, np.float32) if hung else _shadow(shape, alone, light, camera)
     return _composite(shot, shadow)
 
 
@@ -116,20 +116,18 @@ def four_views(library: ShapeLibrary, shape_id: str, side_px: int = 360) -> Imag
     return page
 
 
-def _shadow(
-    shape: Shape, alone: World, light: Lighting, camera: PinholeView, effort: Effort
-) -> Float32[np.ndarray, "h w"]:
+def _shadow(shape: Shape, alone: World, light: Lighting, camera: PinholeView) -> Float32[np.ndarray, "h w"]:
     """How much darker the ground under the shape is than bare ground, 0 to 1; found at half size and smoothed."""
     width, height = max(camera.width // 2, 1), max(camera.height // 2, 1)
-    rays = PinholeView(_resize(camera.camera, width, height)).rays(pixel_centres(width, height))
+    rays = PinholeView(camera.camera.resize(width, height)).rays(pixel_centres(width, height))
     ground = -0.5 * shape.size_m[2]
     fall = np.minimum(rays[..., 5], -1e-6)
     points = rays[..., :3] + rays[..., 3:] * ((ground - rays[..., 2]) / fall)[..., None]
     near = (rays[..., 5] < -1e-6) & (np.linalg.norm(points[..., :2], axis=-1) < 4 * max(shape.size_m))
     up = np.broadcast_to(np.array([0, 0, 1], np.float32), points[near].shape)
     spots, pixels, nothing = Spots(points[near], up, up), np.argwhere(near), World([])
-    shaded = np.add(*irradiance(alone, alone.shadow_caster(), spots, pixels, light, effort))
-    bare = np.add(*irradiance(nothing, nothing.shadow_caster(), spots, pixels, light, effort))
+    shaded = np.add(*irradiance(alone, alone.shadow_caster(), spots, pixels, light, STUDIO_EFFORT))
+    bare = np.add(*irradiance(nothing, nothing.shadow_caster(), spots, pixels, light, STUDIO_EFFORT))
     shadow = np.zeros((height, width), np.float32)
     shadow[near] = np.clip(1.0 - shaded.mean(axis=1) / bare.mean(axis=1), 0, 1)
     whole_blocks = cv2.blur(cv2.blur(shadow, (TILE, TILE)), (TILE, TILE))
@@ -141,10 +139,6 @@ def _vignette(width: int, height: int) -> Float32[np.ndarray, "h w"]:
     """1 inside, falling to 0 at the picture's border, so that no shadow is cut off."""
     x, y = (np.minimum(np.linspace(0, 1, n), np.linspace(1, 0, n)) for n in (width, height))
     return (np.clip(x / 0.12, 0, 1)[None, :] * np.clip(y / 0.12, 0, 1)[:, None]).astype(np.float32)
-
-
-def _resize(camera: Camera, width: int, height: int) -> Camera:
-    return Camera(camera.intrinsics.resize(width, height), camera.T_world_camera)
 
 
 def _composite(shot: Shot, shadow: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarray, "h w 4"]:
@@ -171,7 +165,6 @@ def contact_sheet(
         picture: Renders one shape; the library itself renders nothing.
         size_px: Side of one picture.
         columns: Pictures side by side.
-
     """
     rows = max(-(-len(shapes) // columns), 1)
     page = Image.new("RGB", (columns * size_px, rows * (size_px + CAPTION_PX)), PAGE)

@@ -63,12 +63,12 @@ class World:
         chunks = [_chunk(surface, p.matrix) for p in placed for surface in p.surfaces]
         owners = [p.instance for p in placed for _ in p.surfaces]
         surfaces = [surface for p in placed for surface in p.surfaces]
-        starts = np.cumsum([0, *(len(c.vertices) for c in chunks)])[:-1]
-        self.vertices = _join([c.vertices for c in chunks], 3)
-        self._normals = _join([c.normals for c in chunks], 3)
-        self._uv = _join([c.uv for c in chunks], 2)
-        coloured = any(s.colours is not None for s in surfaces)
-        self._colours = _join([c.colours for c in chunks], 3) if coloured else None
+        starts = np.cumsum([0, *(len(s.vertices) for s in surfaces)])[:-1]
+        self.vertices, self._normals, self._uv, colours = (
+            np.concatenate([np.zeros((0, columns), np.float32), *(chunk[k] for chunk in chunks)])
+            for k, columns in enumerate((3, 3, 2, 3))
+        )
+        self._colours = colours if any(s.colours is not None for s in surfaces) else None
         self._faces = np.concatenate(
             [np.zeros((0, 3), np.int32), *(s.faces + start for s, start in zip(surfaces, starts, strict=True))]
         ).astype(np.int32)
@@ -218,27 +218,16 @@ def place_surfaces(
     return placed
 
 
-@dataclass(frozen=True, eq=False)
-class _Chunk:
-    vertices: Float32[np.ndarray, "n 3"]
-    normals: Float32[np.ndarray, "n 3"]
-    uv: Float32[np.ndarray, "n 2"]
-    colours: Float32[np.ndarray, "n 3"]
-
-
-def _chunk(surface: Surface, matrix: Float[np.ndarray, "4 4"]) -> _Chunk:
+def _chunk(surface: Surface, matrix: Float[np.ndarray, "4 4"]) -> tuple[np.ndarray, ...]:
+    """Places, normals, texture coordinates and colours of a surface's vertices in the world."""
     count = len(surface.vertices)
     linear = matrix[:3, :3]
-    return _Chunk(
+    return (
         (surface.vertices @ linear.T + matrix[:3, 3]).astype(np.float32),
         unit(surface.normals @ np.linalg.inv(linear)).astype(np.float32),
         np.zeros((count, 2), np.float32) if surface.uv is None else surface.uv,
         np.ones((count, 3), np.float32) if surface.colours is None else surface.colours,
     )
-
-
-def _join(arrays: list[np.ndarray], columns: int) -> np.ndarray:
-    return np.concatenate([np.zeros((0, columns), np.float32), *arrays])
 
 
 def _mix(values: np.ndarray, corners: np.ndarray, weights: np.ndarray) -> np.ndarray:

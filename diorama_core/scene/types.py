@@ -98,14 +98,16 @@ class Camera(ArrayValue):
     def T_camera_world(self) -> Float[np.ndarray, "4 4"]:
         """Inverse of `T_world_camera`."""
         R, t = self.T_world_camera[:3, :3], self.T_world_camera[:3, 3]
-        T = np.eye(4)
-        T[:3, :3], T[:3, 3] = R.T, -R.T @ t
-        return T
+        return rigid(R.T, -R.T @ t)
 
     @property
     def position(self) -> Float[np.ndarray, "3"]:
         """Optical centre in the world."""
         return self.T_world_camera[:3, 3]
+
+    def resize(self, width: int, height: int) -> Camera:
+        """This camera for the picture resized to `width` x `height`."""
+        return Camera(self.intrinsics.resize(width, height), self.T_world_camera)
 
     def to_camera(self, points_world: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 3"]:
         """World points in camera coordinates."""
@@ -184,6 +186,13 @@ class Pose(ArrayValue):
     def move(self, offset_world: Vector3) -> Pose:
         """The pose shifted by a world offset."""
         return replace(self, position=self.position + np.asarray(offset_world, dtype=np.float64))
+
+
+def rigid(R: Float[np.ndarray, "3 3"], t: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4 4"]:
+    """`p -> R @ p + t` as one matrix."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, t
+    return T
 
 
 def yaw_rotation(yaw_rad: float) -> Float[np.ndarray, "3 3"]:

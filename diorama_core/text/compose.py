@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diorama_core.editing.positioning import Positioner
+from diorama_core.editing.positioning import Positioner, new_object
 from diorama_core.editing.relations import OF_ROOM, Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.geometry.openings import OPENING_CATEGORIES
@@ -23,7 +23,6 @@ from diorama_core.scene import edits
 from diorama_core.scene.support import check_scene, descendants
 from diorama_core.scene.types import Pose, Scene, SceneObject
 from diorama_core.synthesis import furnish_room
-from diorama_core.text.customs import DECOR
 from diorama_core.text.edit_places import lift_onto
 from diorama_core.text.placed_rows import PlacedRows, place_rows
 from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, read_prompt
@@ -36,7 +35,7 @@ from diorama_core.text.requested_relations import (
     targets_of,
     usual_relations,
 )
-from diorama_core.text.requested_room import dress, empty_room, shapes_for, with_essentials
+from diorama_core.text.requested_room import DECOR, dress, empty_room, shapes_for, with_essentials
 
 TRIES = 4
 """Rooms begun anew, each a little larger, until every wish is met."""
@@ -87,17 +86,13 @@ def compose_room(
         unwished = [o.id for o in scene.objects if {o.category, broad(o.category)} & set(request.excluded)]
         scene = edits.remove(scene, [*unwished, *(c for i in unwished for c in descendants(scene, i))])
         return Composed(scene, ignored, request)
-    best: tuple[float, Composed] | None = None
-    for attempt in range(TRIES):
-        progress.report(attempt / TRIES, "Composing a room from the library")
-        composer = _Composer(request, library, np.random.default_rng((digest, attempt)), attempt)
-        made = composer.compose()
-        if best is None or made[0] < best[0]:
-            best = made
-        if not best[1].notes:
-            break
-    assert best is not None
-    return replace(best[1], notes=(*ignored, *best[1].notes))
+    made: list[tuple[float, Composed]] = []
+    while len(made) < TRIES and all(room.notes for _, room in made):
+        progress.report(len(made) / TRIES, "Composing a room from the library")
+        rng = np.random.default_rng((digest, len(made)))
+        made.append(_Composer(request, library, rng, len(made)).compose())
+    best = min(made, key=lambda attempt: attempt[0])[1]
+    return replace(best, notes=(*ignored, *best.notes))
 
 
 class _Composer:
@@ -160,14 +155,9 @@ class _Composer:
             central = stands_between(request, wanted) or is_sat_around(request, wanted)
             middle = np.array([*RoomFrame.of(self.scene).middle, 0.0]) if central else None
             for shape in (chosen,) if chosen is not None else shapes[:SHAPES_TRIED]:
-                number = sum(o.category == shape.category for o in self.scene.objects) + 1
-                blank = Pose.upright(np.zeros(3))
-                item = SceneObject(
-                    object_id, f"{shape.category} {number}", shape.category, shape.id, shape.size_m, blank
-                )
-                wishes = row_relations(
-                    place_seat(self.scene, [r for _, r in relations], request, copy), request, copy, shape
-                )
+                item = new_object(self.scene, shape, request.category)
+                seated = place_seat(self.scene, [r for _, r in relations], request, copy)
+                wishes = row_relations(seated, request, copy, shape)
                 spot = self.positioner.best(self.scene, item, wishes, usual=usual, others=self.relations, near=middle)
                 if spot is None:
                     continue

@@ -20,7 +20,7 @@ from diorama_core.io.bounded import shorten
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene.types import Scene
-from diorama_core.text.edit_lengths import all_but, lift, nearer, quantity_edits, shift_in, shift_of
+from diorama_core.text.edit_lengths import lift, nearer, quantity_edits, shift_in, shift_of
 from diorama_core.text.edit_plan import (
     MAX_COPIES,
     Copy,
@@ -39,7 +39,15 @@ from diorama_core.text.edit_wording import EXAMPLES, VERBS, plain
 from diorama_core.text.edit_words_objects import object_edits, places_of_phrases
 from diorama_core.text.edit_words_room import room_edits
 from diorama_core.text.looks import has_look, look_of
-from diorama_core.text.phrases import APPEARANCES, NUMBERS, PlacePhrase, noun_phrase, relation_pattern, split_places
+from diorama_core.text.phrases import (
+    APPEARANCES,
+    NUMBERS,
+    PlacePhrase,
+    noun_phrase,
+    relation_pattern,
+    split_list,
+    split_places,
+)
 from diorama_core.text.selecting import Selector
 
 _VERB = re.compile(
@@ -92,7 +100,7 @@ def _edits_of(
 ) -> tuple[Edit, ...]:
     selector = Selector(scene, library, last, selected)
     clause = plain(clause)
-    known = quantity_edits(selector, clause) or room_edits(selector, clause) or object_edits(selector, clause, _subject)
+    known = quantity_edits(selector, clause) or room_edits(selector, clause) or object_edits(selector, clause)
     if known:
         return known
     match = _VERB.match(clause)
@@ -101,36 +109,30 @@ def _edits_of(
     if not rest and verb:
         raise EditRefused(f"“{clause}”: {verb} what? For example: {EXAMPLES}")
     if verb == "remove":
-        return (Remove(objects=list(_subject(selector, rest))),)
+        return (Remove(objects=selector.subject(rest)),)
     if verb == "clear":
         carrier = selector.objects(rest.removeprefix("off ").removeprefix("up "))
-        on = [i for c in carrier for i in _load(scene, c)]
+        on = [i for c in carrier for i in scene.children_of(c)]
         if not on:
             raise EditRefused(f"there is nothing on {scene.object(carrier[0]).label}")
         return (Remove(objects=on),)
-    if verb == "turn" and re.search(r" into (?:an?|some) ", rest):
+    if verb in ("swap", "change") or (verb == "turn" and re.search(r" into (?:an?|some) ", rest)):
         return _with_copies(_swap(selector, clause, rest))
     if verb == "turn":
         return (_turn(selector, clause, rest),)
-    if verb in ("swap", "change"):
-        return _with_copies(_swap(selector, clause, rest))
     if verb in ("paint", "make"):
         return _each_alone(_look, selector, clause, rest)
     if verb in ("larger", "smaller"):
-        return (Resize(objects=list(_subject(selector, rest)), factor=_factor(rest, verb == "larger")),)
+        return (Resize(objects=selector.subject(rest), factor=_factor(rest, verb == "larger")),)
     if verb == "lift":
-        return (lift(selector, clause, rest, _subject),)
+        return (lift(selector, clause, rest),)
     if verb in ("move", "put") and (height := _HIGHER.search(rest)) is not None:
-        return (
-            lift(selector, "lower" if height[2] or height[1] == "lower" else "raise", rest[: height.start()], _subject),
-        )
-    if verb in ("put", "move") and (shift := shift_in(selector, rest, _subject, leaves=verb == "put")) is not None:
+        way = "lower" if height[2] or height[1] == "lower" else "raise"
+        return (lift(selector, way, rest[: height.start()]),)
+    if verb in ("move", "put") and (shift := shift_in(selector, rest, leaves=verb == "put")) is not None:
         return (shift,)
-    if verb == "move":
+    if verb == "move" or (verb == "put" and _is_known(selector, rest)):
         return _each_alone(_move, selector, clause, rest)
-    if verb == "put":
-        is_there = _is_known(selector, rest)
-        return _each_alone(_move, selector, clause, rest) if is_there else _inserts(selector, clause, rest)
     if not verb and not _is_wish(rest):
         raise EditRefused(f"“{clause}” is not understood; for example: {EXAMPLES}")
     return _inserts(selector, clause, rest)
@@ -140,12 +142,10 @@ def _each_alone(
     read: Callable[[Selector, str, str], Edit], selector: Selector, clause: str, rest: str
 ) -> tuple[Edit, ...]:
     """ "the desk white and the chair black" is two edits, "the desk and the chair black" is one of two objects."""
-    parts = [p for p in re.split(r",\s*(?:and\s+)?|\band\b", rest) if p.strip()]
+    parts = split_list(rest)
     if len(parts) > 1:
-        try:
-            return tuple(read(selector, clause, part.strip()) for part in parts)
-        except EditRefused:  # not all of them are whole by themselves
-            return (read(selector, clause, rest),)
+        with suppress(EditRefused):  # not all of them are whole by themselves
+            return tuple(read(selector, clause, part) for part in parts)
     return (read(selector, clause, rest),)
 
 
@@ -160,58 +160,20 @@ def _is_wish(text: str) -> bool:
     return phrase is None or set(others) <= _AND_SO
 
 
-def _load(scene: Scene, carrier: str) -> tuple[str, ...]:
-    return scene.children_of(carrier)
-
-
-def _subject(selector: Selector, text: str) -> tuple[str, ...]:
-    """Objects with everything that is said of where they are; several joined by "and"."""
-    if (spared := all_but(text)) is not None:
-        number, noun = spared
-        ids = _subject(selector, f"all {noun}")
-        if len(ids) <= number:
-            raise EditRefused(f"there {'is' if len(ids) == 1 else 'are'} only {len(ids)} of these")
-        return ids[number:]
-    if (share := re.match(r"half (?:of )?(?:the |my |all )*(.+)", text)) is not None:
-        ids = _subject(selector, f"all {share[1]}")
-        return ids[: max(len(ids) // 2, 1)]
-    kept, _, left = (
-        part.strip()
-        for part in re.sub(r"\b(?:other than|apart from|but not|but keep|but leave|but)\b", "except", text).partition(
-            "except"
-        )
-    )
-    if left:
-        whose = noun_phrase(kept)[0] if set(left.split()) <= {*APPEARANCES, "the", "one"} else None
-        left_out = _subject(selector, left if whose is None else f"{left} {whose.label}")  # "all but the largest"
-        return tuple(i for i in _subject(selector, kept) if i not in left_out)
-    parts = re.split(r",\s*|\band\b", text) if not re.search(r"\bbetween\b", text) else [text]
-    objects: list[str] = []
-    for part in parts:
-        if part.strip():
-            part = re.sub(r"\b(?:it|them)$", parts[0], part.strip()) if part is not parts[0] else part
-            head, places = split_places(part)
-            objects += [i for i in selector.objects(head, places) if i not in objects]
-    return tuple(objects)
-
-
 def _is_known(selector: Selector, text: str) -> bool:
     """Whether what is put somewhere is in the scene: "the lamp", not "a lamp"."""
     head, _ = split_places(text)
     phrase, _ = noun_phrase(head)
-    first = head.split()[0] if head.split() else ""
     if phrase is None or phrase.pronoun or phrase.every or phrase.definite or not phrase.label:
         return True
-    return (
-        first not in NUMBERS
-        and not first.isdigit()
-        and any(o.category == phrase.category for o in selector.scene.objects)
-    )
+    first = head.split()[0]
+    counted = first in NUMBERS or first.isdigit()
+    return not counted and any(o.category == phrase.category for o in selector.scene.objects)
 
 
 def _move(selector: Selector, clause: str, rest: str) -> Edit:
     head, places = split_places(rest)
-    shift = nearer(selector, rest, _subject) or shift_of(selector, rest, _subject)
+    shift = nearer(selector, rest) or shift_of(selector, rest)
     if shift is not None:
         return shift
     toward = re.match(r"(.*?)\s+\bto\s+(.+)$", rest)
@@ -271,28 +233,28 @@ def _turn(selector: Selector, clause: str, rest: str) -> Edit:
         head = re.sub(r"\bby\b.*$", "", rest[: degrees.start()]).strip()
         sign = -1.0 if re.search(r"\bright\b|(?<!anti)(?<!counter)(?<!-)\bclockwise\b", rest) else 1.0
         head = re.sub(r"\b(left|right|clockwise)\b", "", head)
-        return Turn(objects=list(_subject(selector, head)), degrees=max(min(sign * float(degrees[1]), 360.0), -360.0))
+        return Turn(objects=selector.subject(head), degrees=max(min(sign * float(degrees[1]), 360.0), -360.0))
     toward = re.match(r"(.*?)\s*\b(?:(?:to |it )?faces?|to look at|towards?|to|at|facing)\b\s+(.*)$", rest) or re.match(
         r"(the [\w ]+?)\s+(the [\w ]+)$", rest
     )
     if toward is not None and toward[1] and toward[2] not in ("left", "right", "the left", "the right"):
         targets = selector.targets(toward[2])
-        return Turn(objects=list(_subject(selector, toward[1])), toward=targets[0])
+        return Turn(objects=selector.subject(toward[1]), toward=targets[0])
     if fixed is not None or (toward is not None and toward[1]):
         word = fixed[1] if fixed is not None else str(toward and toward[2]).removeprefix("the ")
         angle = {"left": 90.0, "anticlockwise": 90.0, "right": -90.0, "clockwise": -90.0}.get(word, 180.0)
         head = rest[: fixed.start()] if fixed is not None else str(toward and toward[1])
-        return Turn(objects=list(_subject(selector, re.sub(r"\bto the\b\s*$", "", head))), degrees=angle)
+        return Turn(objects=selector.subject(re.sub(r"\bto the\b\s*$", "", head)), degrees=angle)
     raise EditRefused(f"“{clause}”: which way? For example: turn the armchair to the window, or by 90 degrees")
 
 
 def _with_copies(edit: Edit) -> tuple[Edit, ...]:
     """ "two armchairs" in the place of one sofa: the second beside the first."""
-    phrase = noun_phrase(edit.what)[0] if isinstance(edit, Swap) and len(edit.objects) == 1 else None
-    more = 0 if phrase is None or not isinstance(edit, Swap) or phrase.label == edit.what else phrase.count - 1
-    return (
-        (edit, Copy(objects=edit.objects, count=min(more, MAX_COPIES))) if more and isinstance(edit, Swap) else (edit,)
-    )
+    if isinstance(edit, Swap) and len(edit.objects) == 1:
+        phrase = noun_phrase(edit.what)[0]
+        if phrase is not None and phrase.label != edit.what and phrase.count > 1:
+            return edit, Copy(objects=edit.objects, count=min(phrase.count - 1, MAX_COPIES))
+    return (edit,)
 
 
 def _swap(selector: Selector, clause: str, rest: str) -> Edit:
@@ -302,10 +264,8 @@ def _swap(selector: Selector, clause: str, rest: str) -> Edit:
     surface = _room_part(parts[0])
     if surface is not None:
         return Paint(part=surface, colour=_colour(parts[1], clause))
-    ids = list(_subject(selector, parts[0]))
-    what = re.sub(
-        r"^(?:an?|some|the|another|something|anything)\s+|\s+\b(?:ones?|instead)\b", " ", f"{parts[1]}"
-    ).strip()
+    ids = selector.subject(parts[0])
+    what = re.sub(r"^(?:an?|some|the|another|something|anything)\s+|\s+\b(?:ones?|instead)\b", " ", parts[1]).strip()
     phrase, unknown = noun_phrase(what)
     if phrase is None and look_of(what) is None and unknown and unknown not in ("one", "ones", "different", "other"):
         raise EditRefused(f"the library has nothing called “{unknown}”; try another word")
@@ -337,8 +297,8 @@ def _look(selector: Selector, clause: str, rest: str) -> Edit:
     facing = re.match(r"(.*?)\s*\b(?:face|look at|point (?:at|to))\b\s+(.*)$", rest)
     if facing is not None and facing[1]:
         if facing[2] in ("each other", "one another"):
-            return Move(objects=list(_subject(selector, facing[1])), places=[Place(relation="facing", targets=[])])
-        return Turn(objects=list(_subject(selector, facing[1])), toward=selector.targets(facing[2])[0])
+            return Move(objects=selector.subject(facing[1]), places=[Place(relation="facing", targets=[])])
+        return Turn(objects=selector.subject(facing[1]), toward=selector.targets(facing[2])[0])
     resized = re.match(
         r"(.*?)\s*\b((?:a (?:bit|little) |much |\d+ ?(?:%|percent) |twice as |half as |\d+(?:\.\d+)? times )*"
         r"(?:bigger|larger|smaller|big|large|small|(?:half|twice|double) (?:the|its|their) size))$",
@@ -346,7 +306,7 @@ def _look(selector: Selector, clause: str, rest: str) -> Edit:
     )
     if resized is not None and resized[1]:
         shrinks = bool(re.search(r"small|half", resized[2]))
-        return Resize(objects=list(_subject(selector, resized[1])), factor=_factor(resized[2], not shrinks))
+        return Resize(objects=selector.subject(resized[1]), factor=_factor(resized[2], not shrinks))
     words = rest.split()
     for cut in range(1, len(words)):
         head, look = " ".join(words[:cut]), " ".join(words[cut:])
@@ -359,15 +319,15 @@ def _look(selector: Selector, clause: str, rest: str) -> Edit:
         phrase, _ = noun_phrase(split_places(head)[0])
         if phrase is None:
             continue
-        return Restyle(objects=list(_subject(selector, head)), look=look)
+        return Restyle(objects=selector.subject(head), look=look)
     head, _, shaped = rest.rpartition(" ")
-    ids: tuple[str, ...] = ()
+    ids: list[str] = []
     with suppress(EditRefused):  # what is wrong with the look is the better answer
-        ids = _subject(selector, head) if shaped in APPEARANCES else ()
+        ids = selector.subject(head) if shaped in APPEARANCES else []
     if ids:  # "make the rug round"
         kind = selector.scene.object(ids[0]).category
         if any(has_look(shape, shaped) for shape in selector.library.in_category(kind)):
-            return Swap(objects=list(ids), what=f"{shaped} {kind}")
+            return Swap(objects=ids, what=f"{shaped} {kind}")
     if _room_part(rest) is not None:
         raise EditRefused(f"“{clause}”: in what colour? For example: paint the walls light blue")
     raise EditRefused(f"“{clause}” names no colour, material or size known here; for example: make all chairs wooden")
@@ -390,8 +350,7 @@ def _factor(text: str, larger: bool) -> float:
 
 def _inserts(selector: Selector, clause: str, rest: str) -> tuple[Edit, ...]:
     """Each of "a lamp, two plants and a rug", with the phrases of place that follow it."""
-    parts = [rest] if re.search(r"\bbetween\b", rest) else re.split(r",\s*(?:and\s+)?|\band\b", rest)
-    parts = [p.strip() for p in parts if p.strip()]
+    parts = [rest] if re.search(r"\bbetween\b", rest) else split_list(rest)
     at = None if not parts else relation_pattern().search(parts[-1])
     if at is not None and not re.search(r"\b(?:it|them|each|one)\b", parts[-1][at.start() :]):
         parts = [p if split_places(p)[1] or " to " in p else f"{p} {parts[-1][at.start() :]}" for p in parts]

@@ -7,16 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from diorama_core.editing.positioning import Positioner
+from diorama_core.editing.positioning import Positioner, new_object
 from diorama_core.editing.relations import SEATS, Relation
 from diorama_core.errors import EditRefused
 from diorama_core.library.labels import with_article
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.library.taxonomy import CATEGORIES, broad, category, having, with_kin
-from diorama_core.scene import edits
-from diorama_core.scene.types import Pose, Scene, SceneObject
+from diorama_core.scene.types import Scene, SceneObject
 from diorama_core.text.edit_looks import looking_like
-from diorama_core.text.edit_places import lift_onto, unmet_notes
+from diorama_core.text.edit_places import lift_onto, relations_of, unmet_notes
 from diorama_core.text.edit_plan import Done, Insert
 from diorama_core.text.looks import fitting_shapes
 from diorama_core.text.phrases import NUMBERS, NounPhrase, noun_phrase
@@ -30,15 +29,9 @@ TALL_M = 0.6
 """Plants of at least this height stand on the floor."""
 
 
-def insert(positioner: Positioner, scene: Scene, edit: Insert, relations: Sequence[Relation]) -> Done:
-    """New objects of the library at the best free places where relations hold.
-
-    Args:
-        positioner: finds free places.
-        scene: as it is.
-        edit: what was asked for.
-        relations: what is to hold.
-    """
+def insert(positioner: Positioner, scene: Scene, edit: Insert) -> Done:
+    """New objects of the library at the best free places where relations hold."""
+    relations = relations_of(scene, edit.places)
     phrase, unknown = noun_phrase(edit.what)
     if phrase is None or not phrase.label:
         raise EditRefused(f"the library has nothing called “{unknown or edit.what}”; try another word")
@@ -142,7 +135,6 @@ def _with_one(
     count: int,
 ) -> tuple[Scene, str | None, Shape | None]:
     """The first shape that finds a free place; of several targets "beside", each gets its share."""
-    object_id = edits.fresh_id(scene, kind)
     candidates = list(relations)
     if count > 1 or len(targets) > 1:
         candidates = [
@@ -152,19 +144,10 @@ def _with_one(
             for r in candidates
         ]
     for shape in shapes:
-        number = sum(o.category == shape.category for o in scene.objects) + 1
-        item = SceneObject(
-            object_id,
-            f"{shape.category} {number}",
-            shape.category,
-            shape.id,
-            shape.size_m,
-            Pose.upright(np.zeros(3)),
-        )
+        item = new_object(scene, shape, kind)
         # Where nothing is said, it stands as such things do: a chair at the table.
         usual = [] if candidates else usual_relations(scene, RequestedObject(kind, kind), copy)
         spot = positioner.best(scene, item, candidates, usual=usual)
         if spot is not None:
-            after = positioner.put(scene, item, spot)
-            return lift_onto(after, object_id), object_id, shape
+            return lift_onto(positioner.put(scene, item, spot), item.id), item.id, shape
     return scene, None, None

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable
 
 import numpy as np
 
 from diorama_core.editing.footprints import footprint_of, gaps
 from diorama_core.errors import EditRefused
 from diorama_core.library.taxonomy import broad
+from diorama_core.scene.types import Scene
 from diorama_core.text.edit_plan import MAX_COPIES, Edit, Insert, Place, Remove, Resize, Shift
 from diorama_core.text.edit_room import gap_to_wall
-from diorama_core.text.phrases import NUMBERS, split_places
+from diorama_core.text.phrases import split_places
 from diorama_core.text.selecting import Selector
 
 _DISTANCE = re.compile(
@@ -44,11 +44,8 @@ GAP_STEPS = 8
 """Of finding how far to go until a gap is left: each takes up what the one before left."""
 MAX_SHIFT_M, MAX_LIFT_M = 20.0, 3.0
 
-Subject = Callable[[Selector, str], tuple[str, ...]]
-"""The ids of the objects that a phrase names."""
 
-
-def shift_of(selector: Selector, rest: str, subject: Subject) -> Shift | None:
+def shift_of(selector: Selector, rest: str) -> Shift | None:
     """ "the sofa 50 cm to the left": None where it says something else."""
     plain = _DISTANCE.sub(" ", rest)
     way = re.search(rf"^(.*?)\s*(?:to the |a (?:bit|little) |further )*\b({'|'.join(_WAYS)})\s*$", plain.strip())
@@ -57,10 +54,10 @@ def shift_of(selector: Selector, rest: str, subject: Subject) -> Shift | None:
     distance = _distance_m(rest, STEP_M, MAX_SHIFT_M)
     right, away = _WAYS[way[2]]
     head = re.sub(r"\b(?:to the|a bit|a little|further)\s*$", "", way[1]).strip()
-    return Shift(objects=list(subject(selector, head)), right_m=distance * right, away_m=distance * away)
+    return Shift(objects=selector.subject(head), right_m=distance * right, away_m=distance * away)
 
 
-def nearer(selector: Selector, rest: str, subject: Subject) -> Shift | None:
+def nearer(selector: Selector, rest: str) -> Shift | None:
     """ "the table half a metre closer to the sofa": None where it says something else.
 
     Without a distance "to" and "towards" mean beside, and walls are no objects to go nearer to.
@@ -69,63 +66,48 @@ def nearer(selector: Selector, rest: str, subject: Subject) -> Shift | None:
     if way is None or split_places(way[1])[1]:
         return None
     distance = _distance_m(rest, STEP_M, MAX_SHIFT_M)
-    sign = -1.0 if way[2] in ("away", "farther", "further") else 1.0
+    by_m = -distance if way[2] in ("away", "farther", "further") else distance
     wall = re.fullmatch(r"\w+ (?:(\w+) )?walls?", way[3])
     if wall is not None and length_in(rest) is None:
         return None
     if wall is not None and wall[1] in _WALLS:
         right, back = _WALLS[wall[1]]
-        ids = list(subject(selector, way[1]))
-        return Shift(objects=ids, right_m=sign * distance * right, away_m=sign * distance * back)
+        return Shift(objects=selector.subject(way[1]), right_m=by_m * right, away_m=by_m * back)
     if wall is not None and wall[1] is None:
-        return Shift(objects=list(subject(selector, way[1])), off_wall_m=-sign * distance)
-    if wall is not None:  # the window wall is where the window is
-        toward = selector.targets(f"the {wall[1]}")[0]
-        return Shift(objects=list(subject(selector, way[1])), toward=toward, toward_m=sign * distance)
-    toward = selector.targets(way[3])[0]
-    return Shift(objects=list(subject(selector, way[1])), toward=toward, toward_m=sign * distance)
+        return Shift(objects=selector.subject(way[1]), off_wall_m=-by_m)
+    toward = selector.targets(way[3] if wall is None else f"the {wall[1]}")[0]  # the window wall is where the window is
+    return Shift(objects=selector.subject(way[1]), toward=toward, toward_m=by_m)
 
 
-def shift_in(selector: Selector, rest: str, subject: Subject, *, leaves: bool) -> Shift | None:
+def shift_in(selector: Selector, rest: str, *, leaves: bool) -> Shift | None:
     """Shift by "the table 40 cm from the sofa", "closer to the sofa, about 40 cm away"; None for anything else.
 
-    Args:
-        selector: finds the objects.
-        rest: what follows the verb.
-        subject: the ids that a phrase means.
-        leaves: whether "40 cm away from" is what is left between them, as in "put it", or the way, as in "move it".
+    "40 cm away from" is what is left between them where `leaves`, as in "put it"; the way otherwise, as in "move it".
     """
     length = length_in(rest)
     plain = " ".join(_DISTANCE.sub(" ", rest).split())
     way = _TO_A_GAP.match(plain) or _FROM.match(plain)
     if length is None or way is None or split_places(way[1])[1] or (way.groupdict().get("away") and not leaves):
         return None
-    object_id, *more = subject(selector, way[1])
+    ids = selector.subject(way[1])
     if re.fullmatch(r"\w+ walls?", way[way.re.groups]):
-        return Shift(objects=[object_id, *more], off_wall_m=length - gap_to_wall(selector.scene, object_id))
+        return Shift(objects=ids, off_wall_m=length - gap_to_wall(selector.scene, ids[0]))
     target = selector.targets(way[way.re.groups])[0]
-    item, other = selector.scene.object(object_id), footprint_of(selector.scene.object(target))
+    item, other = selector.scene.object(ids[0]), footprint_of(selector.scene.object(target))
     ahead = selector.scene.object(target).pose.position[:2] - item.pose.position[:2]
     ahead = ahead / max(float(np.linalg.norm(ahead)), 1e-6)
     toward_m = 0.0
     for _ in range(GAP_STEPS):
         toward_m += float(gaps((footprint_of(item) + toward_m * ahead)[None], other)[0]) - length
-    return Shift(objects=[object_id, *more], toward=target, toward_m=toward_m)
+    return Shift(objects=ids, toward=target, toward_m=toward_m)
 
 
-def lift(selector: Selector, clause: str, rest: str, subject: Subject) -> Shift:
-    """ "raise the picture by 20 cm", "lower the clock".
-
-    Args:
-        selector: finds the objects.
-        clause: the sentence.
-        rest: what follows the verb.
-        subject: what was spoken of before.
-    """
+def lift(selector: Selector, clause: str, rest: str) -> Shift:
+    """ "raise the picture by 20 cm", "lower the clock"; `rest` is what follows the verb."""
     distance = _distance_m(rest, HUNG_STEP_M, MAX_LIFT_M)
     head = re.sub(r"\b(?:a bit|a little|slightly)\s*$", "", _DISTANCE.sub(" ", rest).strip()).strip()
     down = re.search(r"\blower\b", clause) is not None
-    return Shift(objects=list(subject(selector, head)), up_m=-distance if down else distance)
+    return Shift(objects=selector.subject(head), up_m=-distance if down else distance)
 
 
 def length_in(text: str) -> float | None:
@@ -158,7 +140,6 @@ _CHANGED = re.compile(
     r"(?:the (?P<what>number|amount|size) of )?(?:the |my |all )?"
     r"|.*?\b(?P<many>twice|half) as many )(?P<noun>.+)$"
 )
-_ALL_BUT = re.compile(r"^all (?:of )?(?:but|except) (\w+)(?: of)? (?:the |my |these |those )?(.+)$")
 
 
 def quantity_edits(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
@@ -173,36 +154,25 @@ def quantity_edits(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     factor, noun = _TIMES[match["verb"] or match["many"]], match["noun"]
     if match["what"] == "size":
         return (Resize(objects=list(selector.objects(noun)), factor=factor),)
-    ids = selector.objects(f"all {noun}")
+    scene, ids = selector.scene, selector.objects(f"all {noun}")
     wanted = round(factor * len(ids))
     if wanted <= len(ids):
-        return (Remove(objects=list(ids[max(wanted, 1) :])),) if len(ids) > 1 else _too_few(selector, ids[0])
+        if len(ids) == 1:
+            raise EditRefused(f"there is only one {scene.object(ids[0]).category}")
+        return (Remove(objects=list(ids[max(wanted, 1) :])),)
     if wanted - len(ids) > MAX_COPIES:
         raise EditRefused(f"that would be {wanted - len(ids)} more; {MAX_COPIES} at a time are possible")
     copies = (ids * (wanted // len(ids)))[: wanted - len(ids)]
-    scene = selector.scene
-    homes = Counter((scene.object(i).category, _carrier(selector, i)) for i in copies)
+    homes = Counter((scene.object(i).category, _carrier(scene, i)) for i in copies)
     return tuple(
         Insert(what=what, count=count, places=[Place(relation="on", targets=[carrier])] if carrier else [])
         for (what, carrier), count in homes.items()
     )
 
 
-def all_but(text: str) -> tuple[int, str] | None:
-    """How many of what are spared: "all but one of the pillows"; None where a phrase says something else."""
-    match = _ALL_BUT.match(text.strip())
-    if match is None or not (match[1].isdigit() or NUMBERS.get(match[1], 0)) or match[1] in ("the", "a", "an"):
-        return None
-    return (int(match[1]) if match[1].isdigit() else NUMBERS[match[1]]), match[2]
-
-
-def _carrier(selector: Selector, object_id: str) -> str:
+def _carrier(scene: Scene, object_id: str) -> str:
     """The object that carries another; empty for what stands on the floor, on a rug too, or hangs."""
-    edge = selector.scene.support_of(object_id)
-    if edge is None or not selector.scene.has_object(edge.parent):
+    edge = scene.support_of(object_id)
+    if edge is None or not scene.has_object(edge.parent):
         return ""
-    return "" if broad(selector.scene.object(edge.parent).category) == "rug" else edge.parent
-
-
-def _too_few(selector: Selector, object_id: str) -> tuple[Edit, ...]:
-    raise EditRefused(f"there is only one {selector.scene.object(object_id).category}")
+    return "" if broad(scene.object(edge.parent).category) == "rug" else edge.parent

@@ -15,7 +15,7 @@ from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.scene import edits
 from diorama_core.scene.types import Candidate, Pose, Scene, SceneObject
 from diorama_core.text.edit_places import free
-from diorama_core.text.edit_plan import Done, names_of
+from diorama_core.text.edit_plan import Done, Restyle, Swap, names_of
 from diorama_core.text.looks import fitting_shapes, has_look, is_made_of, look_of, nearest_in_size, scale_into
 from diorama_core.text.phrases import noun_phrase
 
@@ -23,28 +23,20 @@ SHAPES_COMPARED = 32
 """Shapes, of those that fit the words equally well, of which the nearest in size is taken."""
 
 
-def restyle(library: ShapeLibrary, scene: Scene, ids: Sequence[str], words: str) -> Done:
-    """Objects in a colour, or of a material: shapes that are made of it, or paint.
-
-    Args:
-        library: where shapes come from.
-        scene: as it is.
-        ids: of the objects.
-        words: as they were said.
-    """
+def restyle(positioner: Positioner, scene: Scene, edit: Restyle) -> Done:
+    """Objects in a colour, or of a material: shapes that are made of it, or paint."""
+    ids, words = edit.objects, edit.look
     look = look_of(words)
     if look is None:
         raise EditRefused(f"“{words}” is no colour or material known here; try light blue, sage, oak, leather")
-    after, lines, notes = scene, [], []
+    after, lines, notes, ids_left = scene, [], [], ids
     if look.material:
-        after, by_shape, already = _change_material(library, scene, ids, look.material)
+        after, by_shape, already = _change_material(positioner.library, scene, ids, look.material)
         lines += [f"{names_of(scene, members)}: {caption}" for caption, members in by_shape.items()]
         if already:
             notes.append(f"{names_of(scene, already)} {'is' if len(already) == 1 else 'are'} {words} already")
         changed = {i for members in by_shape.values() for i in members} | set(already)
         ids_left = [i for i in ids if i not in changed]
-    else:
-        ids_left = list(ids)
     for object_id in ids_left:
         after = edits.recolour(after, object_id, look.colour)
         if look.finish is not None:
@@ -77,27 +69,18 @@ def _change_material(
     return after, by_shape, already
 
 
-def swap(positioner: Positioner, scene: Scene, ids: Sequence[str], words: str) -> Done:
-    """Other shapes in the place of objects: of the same kind where the words name none.
-
-    Args:
-        positioner: finds free places.
-        scene: as it is.
-        ids: of the objects.
-        words: as they were said.
-    """
-    first = scene.object(ids[0])
-    phrase, _ = noun_phrase(words)
-    named = phrase is not None and bool(phrase.label)
-    kind = phrase.category if phrase is not None and named else first.category
-    appearance = phrase.appearance if phrase is not None else tuple(words.split())
-    label = phrase.label if phrase is not None and named else first.category
+def swap(positioner: Positioner, scene: Scene, edit: Swap) -> Done:
+    """Other shapes in the place of objects: of the same kind where the words name none."""
+    ids, first = edit.objects, scene.object(edit.objects[0])
+    phrase, _ = noun_phrase(edit.what)
+    appearance = tuple(edit.what.split()) if phrase is None else phrase.appearance
+    named = phrase is not None and phrase.label
+    kind, label = (phrase.category, phrase.label) if phrase is not None and named else (first.category,) * 2
     present = {scene.object(i).shape_id for i in ids}
     shapes, lacking = fitting_shapes(positioner.library, kind, label, appearance, lambda s: s.id not in present)
     if not shapes:
         raise EditRefused(f"the library has no other {label}")
-    missing = len(lacking)
-    equal = [s for s in shapes if len(_missing(s, appearance)) <= missing][:SHAPES_COMPARED]
+    equal = [s for s in shapes if _count_missing(s, appearance) <= len(lacking)][:SHAPES_COMPARED]
     after, notes = scene, []
     like = nearest_in_size(equal, first.size_m) if appearance or kind == first.category else equal[0]
     for object_id in ids:
@@ -117,11 +100,7 @@ def _with_shape(scene: Scene, item: SceneObject, shape: Shape) -> Scene:
     after = edits.swap(scene, item.id, Candidate(shape.id, shape.size_m, 0.0, pose), keep_pose=True)
     if item.photo_materials:
         after = edits.set_material_source(after, item.id, "library")
-    after = edits.refinish(edits.recolour(after, item.id, None), item.id, None)
-    changed = {item.id: after.object(item.id)}
-    if shape.category != item.category:
-        changed[item.id] = replace(changed[item.id], category=shape.category, label=_label(item, shape.category))
-    return replace(after, objects=tuple(changed.get(o.id, o) for o in after.objects))
+    return _as_library_has_it(after, item, shape)
 
 
 def _replace(scene: Scene, item: SceneObject, shape: Shape) -> Scene:
@@ -130,9 +109,18 @@ def _replace(scene: Scene, item: SceneObject, shape: Shape) -> Scene:
     base = item.pose.position - up * item.size_m[2] / 2
     pose = Pose(item.pose.R_world_object, base + up * shape.size_m[2] / 2, np.ones(3))
     after = edits.swap(scene, item.id, Candidate(shape.id, shape.size_m, 0.0, pose), keep_pose=False)
-    new = replace(after.object(item.id), category=shape.category, label=_label(item, shape.category))
-    after = replace(after, objects=tuple(new if o.id == item.id else o for o in after.objects))
-    return edits.refinish(edits.recolour(after, item.id, None), item.id, None)
+    return _as_library_has_it(after, item, shape)
+
+
+def _as_library_has_it(scene: Scene, item: SceneObject, shape: Shape) -> Scene:
+    """An object in its new shape's own colours, called what that is."""
+    kind = shape.category
+    scene = edits.refinish(edits.recolour(scene, item.id, None), item.id, None)
+    if kind == item.category:
+        return scene
+    label = item.label.replace(item.category, kind) if item.category in item.label else kind
+    new = replace(scene.object(item.id), category=kind, label=label)
+    return replace(scene, objects=tuple(new if o.id == item.id else o for o in scene.objects))
 
 
 def looking_like(scene: Scene, ids: Sequence[str], lacking: Sequence[str]) -> tuple[Scene, tuple[str, ...]]:
@@ -140,7 +128,7 @@ def looking_like(scene: Scene, ids: Sequence[str], lacking: Sequence[str]) -> tu
     notes = []
     for word in lacking:
         look = look_of(word)
-        if look is None or look.colour is None:
+        if look is None:
             notes.append(f"the library has none that is {word}")
             continue
         for object_id in ids:
@@ -149,9 +137,5 @@ def looking_like(scene: Scene, ids: Sequence[str], lacking: Sequence[str]) -> tu
     return scene, tuple(notes)
 
 
-def _missing(shape: Shape, appearance: Sequence[str]) -> tuple[str, ...]:
-    return tuple(w for w in appearance if size_request(w) is None and not has_look(shape, w))
-
-
-def _label(item: SceneObject, kind: str) -> str:
-    return item.label.replace(item.category, kind) if item.category in item.label else kind
+def _count_missing(shape: Shape, appearance: Sequence[str]) -> int:
+    return sum(size_request(w) is None and not has_look(shape, w) for w in appearance)

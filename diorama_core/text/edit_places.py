@@ -17,9 +17,9 @@ from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.library.taxonomy import broad, category
 from diorama_core.scene import edits
 from diorama_core.scene.support import ancestors, descendants
-from diorama_core.scene.types import Pose, Scene, Support, yaw_rotation
-from diorama_core.text.edit_plan import Done, Shift, Turn, names_of
-from diorama_core.text.edit_room import direction_of, off_wall
+from diorama_core.scene.types import Scene, Support, yaw_rotation
+from diorama_core.text.edit_plan import Done, Move, Place, Resize, Shift, Side, Turn, names_of
+from diorama_core.text.edit_room import direction_of, off_wall, wall_on
 
 SHARES = (1.0, 0.8, 0.6, 0.4, 0.2)
 """Shares of a way, tried in turn until it is free."""
@@ -27,15 +27,40 @@ MIN_HUNG_SHARE = 0.3
 """What hangs is not made shorter than this share of itself."""
 
 
-def move(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: Sequence[Relation]) -> Done:
-    """Objects at the best free places where relations hold.
+def relations_of(scene: Scene, places: Sequence[Place], moved_ids: Sequence[str] = ()) -> list[Relation]:
+    """The relations that hold at places.
 
-    Args:
-        positioner: finds free places.
-        scene: as it is.
-        ids: of the objects.
-        relations: what is to hold.
+    Raises:
+        EditRefused: a place names no object, or one that is to go there itself, or a wall that the room has not.
     """
+    relations = []
+    for place in places:
+        targets = tuple(place.targets)
+        if not targets and place.relation not in OF_ROOM and not moved_ids:
+            raise EditRefused(f"“{place.relation}” what? Name the object")
+        if set(targets) & set(moved_ids):
+            raise EditRefused(f"{scene.object(targets[0]).label} cannot be {place.relation} itself")
+        toward = _side_direction(scene, place.side, moved_ids)
+        if place.relation == "against wall" and place.side not in ("", "other"):
+            wall_on(scene, place.side)
+        relations.append(Relation(place.relation, targets, toward=toward, side=place.side))
+    return relations
+
+
+def _side_direction(scene: Scene, side: Side, moved_ids: Sequence[str]) -> tuple[float, float] | None:
+    """The direction of a side of the room; "other" is away from where the first object is."""
+    if not side or (side == "other" and not moved_ids):
+        return None
+    if side == "other":
+        way = RoomFrame.of(scene).middle - scene.object(moved_ids[0]).pose.position[:2]
+    else:
+        way = direction_of(scene, side)
+    return float(way[0]), float(way[1])
+
+
+def move(positioner: Positioner, scene: Scene, edit: Move) -> Done:
+    """Objects at the best free places where relations hold."""
+    ids, relations = edit.objects, relations_of(scene, edit.places, edit.objects)
     if not relations:
         raise EditRefused(f"where to should {names_of(scene, ids)} go?")
     after, missed = scene, []
@@ -51,29 +76,21 @@ def move(positioner: Positioner, scene: Scene, ids: Sequence[str], relations: Se
         after = positioner.put(after, item, spot)
         after = lift_onto(after, item.id)
         frame = RoomFrame.of(after)
-        if (
-            of_room := next((r for r in placing if r.side and not is_met(after, object_id, r, frame)), None)
-        ) is not None:
+        of_room = next((r for r in placing if r.side and not is_met(after, object_id, r, frame)), None)
+        if of_room is not None:
             raise EditRefused(f"there is no free place for {item.label} {of_room.words(scene)}")
         missed += unmet_notes(after, object_id, placing)
     where = " and ".join(r.words(scene) for r in relations)
     return Done(after, (f"move {names_of(scene, ids)} {where}",), tuple(ids), tuple(missed))
 
 
-def shift(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift, toward: str = "") -> Done:
-    """Objects moved by lengths: as seen in the photo, up and down what they hang on, or toward an object of an id.
-
-    Args:
-        positioner: finds free places.
-        scene: as it is.
-        ids: of the objects.
-        edit: what was asked for.
-        toward: id of an object; empty for none.
-    """
-    if not (edit.right_m or edit.away_m or edit.up_m or edit.off_wall_m or (toward and edit.toward_m)):
-        raise EditRefused(f"which way should {names_of(scene, ids)} go?")
-    ids = [i for i in ids if not set(ids) & set(ancestors(scene, i))]  # what stands on these goes with them
-    after, notes = _as_far_as_free(positioner, scene, ids, edit, toward)
+def shift(positioner: Positioner, scene: Scene, edit: Shift) -> Done:
+    """Objects moved by lengths: as seen in the photo, up and down what they hang on, or toward an object."""
+    if not (edit.right_m or edit.away_m or edit.up_m or edit.off_wall_m or (edit.toward and edit.toward_m)):
+        raise EditRefused(f"which way should {names_of(scene, edit.objects)} go?")
+    # What stands on these goes with them.
+    ids = [i for i in edit.objects if not set(edit.objects) & set(ancestors(scene, i))]
+    after, notes = _as_far_as_free(positioner, scene, ids, edit)
     for object_id in ids:
         after, note = free(positioner, after, object_id)
         if edit.up_m and not _is_within_heights(after, object_id):
@@ -81,35 +98,33 @@ def shift(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift,
         if _off_its_support(after, object_id):
             raise EditRefused(f"{after.object(object_id).label} would fall off what it stands on; move it by less")
         notes += note
-    goal = scene.object(toward).label if toward else ""
+    goal = scene.object(edit.toward).label if edit.toward else ""
     ways = (
         (edit.right_m, "to the right", "to the left"),
         (edit.away_m, "back", "forward"),
         (edit.up_m, "up", "down"),
         (edit.off_wall_m, "away from the wall", "toward the wall"),
-        (edit.toward_m if toward else 0.0, f"toward {goal}", f"away from {goal}"),
+        (edit.toward_m if edit.toward else 0.0, f"toward {goal}", f"away from {goal}"),
     )
     distances = " and ".join(f"{abs(m):.3g} m {plus if m > 0 else minus}" for m, plus, minus in ways if m)
     return Done(after, (f"move {names_of(scene, ids)} {distances}",), tuple(ids), tuple(notes))
 
 
-def _as_far_as_free(
-    positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift, toward: str
-) -> tuple[Scene, list[str]]:
+def _as_far_as_free(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Shift) -> tuple[Scene, list[str]]:
     """Objects moved together: by less where the whole way is not free, all of it where none of it is."""
-    whole = _shift_by(scene, ids, edit, toward, 1.0)
+    whole = _shift_by(scene, ids, edit, 1.0)
     if edit.up_m:
         return whole
     moved_ids = [d for i in ids for d in (i, *descendants(scene, i))]
     for share in SHARES:
-        after, notes = whole if share == 1.0 else _shift_by(scene, ids, edit, toward, share)
+        after, notes = whole if share == 1.0 else _shift_by(scene, ids, edit, share)
         if not positioner.collisions.pairs(after, moved_ids) and all(positioner.is_inside(after, i) for i in ids):
             short = [] if share == 1.0 else [f"{names_of(scene, ids)}: only {share:.0%} of the way is free"]
             return after, [*notes, *short]
     return whole
 
 
-def _shift_by(scene: Scene, ids: Sequence[str], edit: Shift, toward: str, share: float) -> tuple[Scene, list[str]]:
+def _shift_by(scene: Scene, ids: Sequence[str], edit: Shift, share: float) -> tuple[Scene, list[str]]:
     step = share * (edit.right_m * direction_of(scene, "right") + edit.away_m * direction_of(scene, "back"))
     after, notes = scene, list[str]()
     for object_id in ids:
@@ -117,8 +132,8 @@ def _shift_by(scene: Scene, ids: Sequence[str], edit: Shift, toward: str, share:
         edge = after.support_of(object_id)
         if edit.up_m and (edge is None or edge.relation != "mounted on"):
             raise EditRefused(f"{item.label} stands and does not hang; only what hangs can go up or down")
-        if toward:
-            ahead = after.object(toward).pose.position[:2] - item.pose.position[:2]
+        if edit.toward:
+            ahead = after.object(edit.toward).pose.position[:2] - item.pose.position[:2]
             shift_m = step + share * edit.toward_m * ahead / max(float(np.linalg.norm(ahead)), 1e-6)
         if edit.off_wall_m:
             shift_m = shift_m + share * edit.off_wall_m * off_wall(after, object_id)
@@ -144,16 +159,9 @@ def _hang_lower(scene: Scene, object_id: str, by_m: float) -> tuple[Scene, list[
     return after, [f"{item.label} is {height:.2f} m tall now; it hangs at the ceiling as before"]
 
 
-def turn(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Turn, toward: str = "") -> Done:
-    """Objects turned where they are, by an angle or toward an object of an id.
-
-    Args:
-        positioner: finds free places.
-        scene: as it is.
-        ids: of the objects.
-        edit: what was asked for.
-        toward: id of an object; empty for none.
-    """
+def turn(positioner: Positioner, scene: Scene, edit: Turn) -> Done:
+    """Objects turned where they are, by an angle or toward an object."""
+    ids, toward = edit.objects, edit.toward
     if not toward and not edit.degrees:
         raise EditRefused(f"which way should {names_of(scene, ids)} turn?")
     after, notes = scene, []
@@ -176,28 +184,18 @@ def turn(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Turn, t
     return Done(after, (f"turn {names_of(scene, ids)} {how}",), tuple(ids), tuple(notes))
 
 
-def resize(positioner: Positioner, scene: Scene, ids: Sequence[str], factor: float) -> Done:
-    """Objects larger or smaller, standing on what they stood on.
-
-    Args:
-        positioner: finds free places.
-        scene: as it is.
-        ids: of the objects.
-        factor: on all extents.
-    """
+def resize(positioner: Positioner, scene: Scene, edit: Resize) -> Done:
+    """Objects larger or smaller, standing on what they stood on."""
+    ids, factor = edit.objects, edit.factor
     after, notes = scene, []
     for object_id in ids:
-        item = after.object(object_id)
-        scale = np.asarray(item.pose.scale) * factor
-        rise = float(item.size_m[2]) * (factor - 1.0) / 2
-        hung = scene.support_of(object_id)
-        up = 0.0 if hung is not None and hung.relation == "mounted on" else rise
-        pose = Pose(item.pose.R_world_object, item.pose.position + np.array([0.0, 0.0, up]), scale)
-        on_it = scene.children_of(object_id)
-        after = edits.move(after, object_id, pose)
-        for child in on_it:
+        item, edge = after.object(object_id), scene.support_of(object_id)
+        hangs = edge is not None and edge.relation == "mounted on"
+        rise = 0.0 if hangs else float(item.size_m[2]) * (factor - 1.0) / 2
+        after = edits.move(after, object_id, replace(item.pose.move((0.0, 0.0, rise)), scale=item.pose.scale * factor))
+        for child in scene.children_of(object_id):
             after = seat(after, positioner.library, child)
-        if hung is None or hung.relation != "mounted on":
+        if not hangs:
             after, note = free(positioner, after, object_id)
             notes += note
     how = "larger" if factor > 1 else "smaller"
@@ -206,10 +204,9 @@ def resize(positioner: Positioner, scene: Scene, ids: Sequence[str], factor: flo
 
 def free(positioner: Positioner, scene: Scene, object_id: str) -> tuple[Scene, list[str]]:
     """An object that turned or grew into another steps aside, with the same heading."""
-    after, item = scene, scene.object(object_id)
-    moved_ids = [object_id, *descendants(scene, object_id)]
+    item, moved_ids = scene.object(object_id), [object_id, *descendants(scene, object_id)]
     if not positioner.collisions.pairs(scene, moved_ids) and positioner.is_inside(scene, object_id):
-        return after, []
+        return scene, []
     spot = positioner.nearby(scene, object_id)
     if spot is None:
         raise EditRefused(f"{item.label} has no free space to do that; move it away from other objects first")

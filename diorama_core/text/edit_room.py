@@ -11,12 +11,12 @@ from diorama_core.appearance.patterns import COLOURS
 from diorama_core.appearance.surface_finish import KINDS, usual_finish
 from diorama_core.editing.opening_insertion import with_opening
 from diorama_core.editing.plan_edits import wall_feet
+from diorama_core.editing.positioning import Positioner
 from diorama_core.editing.sunlight import first_daylight, set_light
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.wall_lines import DrawnWall
 from diorama_core.library.labels import with_article
 from diorama_core.library.language import tokens
-from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.lamps import lamps_of
 from diorama_core.scene.light_settings import MAX_EXPOSURE_EV
 from diorama_core.scene.room_edits import (
@@ -74,14 +74,14 @@ def covering_in_words(text: str, plane: Plane) -> SurfaceFinish | None:
     if pattern is None and wood is not None and plane.role == "floor":
         pattern = "boards"
     look = look_of(" ".join(others)) if others else None
-    if others and (look is None or look.colour is None):
+    if others and look is None:
         return None
     if pattern is None:
-        return None if look is None or look.colour is None else SurfaceFinish("paint", look.colour)
+        return None if look is None else SurfaceFinish("paint", look.colour)
     usual = usual_finish(pattern)
     if wood is not None and pattern in ("boards", "parquet", "herringbone"):
         return replace(usual, colour=COLOURS[wood])
-    return usual if look is None or look.colour is None else replace(usual, colour=look.colour)
+    return usual if look is None else replace(usual, colour=look.colour)
 
 
 def _shade(known: SurfaceFinish, by: float) -> SurfaceFinish:
@@ -151,7 +151,7 @@ def light(scene: Scene, edit: Light) -> Done:
     return Done(set_light(scene, settings), tuple(lines))
 
 
-def open_wall(library: ShapeLibrary, scene: Scene, edit: InsertOpening) -> Done:
+def open_wall(positioner: Positioner, scene: Scene, edit: InsertOpening) -> Done:
     """A new door or window in a wall."""
     feet = wall_feet(scene)
     if not feet:
@@ -162,7 +162,7 @@ def open_wall(library: ShapeLibrary, scene: Scene, edit: InsertOpening) -> Done:
     else:
         foot = max(feet, key=lambda f: (_side_score(scene, f, edit.wall), _free_m(scene, f)))
         wall, at = foot.id, 0.5 * (foot.start + foot.end)
-    after, new_id = with_opening(scene, library, edit.what, wall, at)
+    after, new_id = with_opening(scene, positioner.library, edit.what, wall, at)
     return Done(after, (f"put {with_article(edit.what)} into a wall",), (new_id,))
 
 

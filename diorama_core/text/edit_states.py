@@ -4,7 +4,6 @@ exchanges, states, names.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,15 +17,15 @@ from diorama_core.editing.sunlight import set_light, switch_lamp
 from diorama_core.editing.support_changes import why_not_on
 from diorama_core.errors import EditRefused
 from diorama_core.library.opening import can_open
-from diorama_core.library.record import ShapeLibrary
 from diorama_core.render.lamps import lamps_of
 from diorama_core.scene import edits
 from diorama_core.scene.room_edits import move_plane
 from diorama_core.scene.support import descendants
 from diorama_core.scene.types import Scene, Support, yaw_rotation
-from diorama_core.text.edit_places import free, unmet_notes
+from diorama_core.text.edit_places import free, relations_of, unmet_notes
 from diorama_core.text.edit_plan import (
     Align,
+    Copy,
     Done,
     DrawRoom,
     Exchange,
@@ -35,19 +34,14 @@ from diorama_core.text.edit_plan import (
     Rename,
     SetPlace,
     SetState,
+    SetSupport,
     names_of,
 )
 
 
-def place_at(positioner: Positioner, scene: Scene, object_id: str, edit: SetPlace) -> Done:
-    """One object at a base point, heading and size; what stands on it goes along.
-
-    Args:
-        positioner: knows what meets what.
-        scene: as it is.
-        object_id: of the object.
-        edit: what was asked for.
-    """
+def place_at(positioner: Positioner, scene: Scene, edit: SetPlace) -> Done:
+    """One object at a base point, heading and size; what stands on it goes along."""
+    object_id = edit.objects[0]
     item, after = scene.object(object_id), scene
     if edit.size_m is not None:
         if min(edit.size_m) <= 0:
@@ -70,16 +64,9 @@ def place_at(positioner: Positioner, scene: Scene, object_id: str, edit: SetPlac
     return Done(after, (sentence,), (object_id,), tuple(notes))
 
 
-def support(positioner: Positioner, scene: Scene, ids: Sequence[str], parent: str, against: str) -> Done:
-    """Objects held up by something else, and moved onto it; or held by nothing where there is no parent.
-
-    Args:
-        positioner: knows the library.
-        scene: as it is.
-        ids: of the objects.
-        parent: id of an object or plane; empty for nothing.
-        against: id of a wall that they also stand against; empty for none.
-    """
+def support(positioner: Positioner, scene: Scene, edit: SetSupport) -> Done:
+    """Objects held up by something else, and moved onto it; or held by nothing where there is no parent."""
+    ids, parent, against = edit.objects, edit.parent, edit.against
     for plane_or_object in filter(None, (parent, against)):
         if not (scene.has_object(plane_or_object) or scene.has_plane(plane_or_object)):
             raise EditRefused(f"there is no object, wall, floor or ceiling “{plane_or_object}” in this scene")
@@ -112,9 +99,8 @@ def wall_moved(scene: Scene, edit: MoveWall) -> Done:
 
 def outline(scene: Scene, edit: DrawRoom) -> Done:
     """The room over another outline."""
-    return Done(
-        draw_room_of_home(scene, np.array(edit.corners)), (f"draw the room again with {len(edit.corners)} corners",)
-    )
+    after = draw_room_of_home(scene, np.array(edit.corners))
+    return Done(after, (f"draw the room again with {len(edit.corners)} corners",))
 
 
 _AXES = {"depth": 0, "width": 1, "height": 2}
@@ -123,24 +109,16 @@ FACTORS = (0.1, 10.0)
 UPRIGHT = np.array([0.0, 0.0, 1.0])
 
 
-def set_side(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Measure) -> Done:
-    """One side of objects longer or shorter, on the same base; what stands on them rises and sinks with their tops.
-
-    Args:
-        positioner: finds free places.
-        scene: as it is.
-        ids: of the objects.
-        edit: what was asked for.
-    """
+def set_side(positioner: Positioner, scene: Scene, edit: Measure) -> Done:
+    """One side of objects longer or shorter, on the same base; what stands on them rises and sinks with their tops."""
     after, notes, lines = scene, list[str](), list[str]()
-    for object_id in ids:
+    for object_id in edit.objects:
         item = after.object(object_id)
         axis, size = _AXES[edit.side], item.size_m.copy()
-        target = edit.to_m or float(size[axis]) * edit.factor + edit.by_m
-        if not FACTORS[0] <= target / float(size[axis]) <= FACTORS[1]:
-            raise EditRefused(
-                f"{item.label} cannot be {target:.2f} m in {edit.side}; it is {float(size[axis]):.2f} m now"
-            )
+        now = float(size[axis])
+        target = edit.to_m or now * edit.factor + edit.by_m
+        if not FACTORS[0] <= target / now <= FACTORS[1]:
+            raise EditRefused(f"{item.label} cannot be {target:.2f} m in {edit.side}; it is {now:.2f} m now")
         size[axis] = target
         edge = after.support_of(object_id)
         hangs = edge is not None and edge.relation == "mounted on"
@@ -154,35 +132,21 @@ def set_side(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Mea
             after, note = free(positioner, after, object_id)
             notes += note
         lines.append(f"make {item.label} {target:.2f} m in {edit.side}")
-    return Done(after, tuple(lines), tuple(ids), tuple(notes))
+    return Done(after, tuple(lines), tuple(edit.objects), tuple(notes))
 
 
-def copy(positioner: Positioner, scene: Scene, ids: Sequence[str], count: int, relations: Sequence[Relation]) -> Done:
-    """Copies of objects with all that was set of them, beside them where no place is said.
-
-    Args:
-        positioner: finds free places.
-        scene: as it is.
-        ids: of the objects.
-        count: of the copies.
-        relations: what is to hold.
-    """
+def copy(positioner: Positioner, scene: Scene, edit: Copy) -> Done:
+    """Copies of objects with all that was set of them, beside them where no place is said."""
+    ids, count, relations = edit.objects, edit.count, relations_of(scene, edit.places)
     after, new, missed = scene, list[str](), list[str]()
     for object_id in ids:
         item = scene.object(object_id)
         for _ in range(count):
             new_id = edits.fresh_id(after, item.category)
             number = sum(o.category == item.category for o in after.objects) + 1
-            copy = replace(
-                item,
-                id=new_id,
-                label=f"{item.category} {number}",
-                locked=False,
-                hidden=False,
-                mask_id=None,
-                box_px=None,
-            )
-            placing = list(relations) or [Relation("beside", (object_id,))]
+            label = f"{item.category} {number}"
+            copy = replace(item, id=new_id, label=label, locked=False, hidden=False, mask_id=None, box_px=None)
+            placing = relations or [Relation("beside", (object_id,))]
             spot = positioner.best(after, copy, placing, near=None if relations else item.pose.position)
             if spot is None and not relations:
                 spot = positioner.best(after, copy, near=item.pose.position)
@@ -198,6 +162,8 @@ def copy(positioner: Positioner, scene: Scene, ids: Sequence[str], count: int, r
 
 def exchange(positioner: Positioner, scene: Scene, edit: Exchange) -> Done:
     """Two objects each where the other one was, on the same base; each turns as the other one stood."""
+    if len(edit.objects) < 2:
+        raise EditRefused("two different objects can change places")
     first, second = (scene.object(i) for i in edit.objects)
     after = scene
     for item, other in ((first, second), (second, first)):
@@ -223,24 +189,17 @@ def exchange(positioner: Positioner, scene: Scene, edit: Exchange) -> Done:
     return Done(after, (f"exchange {first.label} and {second.label}",), tuple(edit.objects), tuple(notes))
 
 
-def put_in_state(library: ShapeLibrary, scene: Scene, ids: Sequence[str], edit: SetState) -> Done:
-    """Objects locked, hidden, open, or lit, or the contrary.
-
-    Args:
-        library: where shapes come from.
-        scene: as it is.
-        ids: of the objects.
-        edit: what was asked for.
-    """
+def put_in_state(positioner: Positioner, scene: Scene, edit: SetState) -> Done:
+    """Objects locked, hidden, open, or lit, or the contrary."""
     after, state = scene, edit.state
-    for object_id in ids:
+    for object_id in edit.objects:
         item = after.object(object_id)
         if state in ("locked", "unlocked"):
             after = edits.set_locked(after, object_id, state == "locked")
         elif state in ("hidden", "shown"):
             after = edits.set_hidden(after, object_id, state == "hidden")
         elif state in ("open", "closed"):
-            if not can_open(library, item.shape_id):
+            if not can_open(positioner.library, item.shape_id):
                 raise EditRefused(f"{item.label} has nothing that opens; other shapes of the library do")
             after = edits.set_open(after, object_id, 1.0 if state == "open" else 0.0)
         else:
@@ -249,24 +208,19 @@ def put_in_state(library: ShapeLibrary, scene: Scene, ids: Sequence[str], edit: 
             after = set_light(after, switch_lamp(after, object_id, on=state == "on"))
     verb = {"on": "turn on", "off": "turn off", "locked": "lock", "unlocked": "unlock", "hidden": "hide",
             "shown": "show", "open": "open", "closed": "close"}[state]  # fmt: skip
-    return Done(after, (f"{verb} {names_of(scene, ids)}",), tuple(ids))
+    return Done(after, (f"{verb} {names_of(scene, edit.objects)}",), tuple(edit.objects))
 
 
-def rename(scene: Scene, object_id: str, edit: Rename) -> Done:
+def rename(scene: Scene, edit: Rename) -> Done:
     """An object under another name."""
+    object_id = edit.objects[0]
     line = f"call {scene.object(object_id).label} “{edit.to}”"
     return Done(edits.rename(scene, object_id, edit.to), (line,), (object_id,))
 
 
-def line_up(positioner: Positioner, scene: Scene, ids: Sequence[str], edit: Align) -> Done:
-    """Objects in one line, what hangs at one height; or with equal gaps along the way they are spread.
-
-    Args:
-        positioner: finds free places.
-        scene: as it is.
-        ids: of the objects.
-        edit: what was asked for.
-    """
+def line_up(positioner: Positioner, scene: Scene, edit: Align) -> Done:
+    """Objects in one line, what hangs at one height; or with equal gaps along the way they are spread."""
+    ids = edit.objects
     if len(ids) < 2:
         raise EditRefused(f"{names_of(scene, ids)} is alone; two objects or more are lined up")
     axis = widest_axis(scene, ids)

@@ -154,11 +154,10 @@ def _without_remarks(clauses: list[str]) -> tuple[str, ...]:
             continue
         if re.match(rf"^{_BEGINS}", clause) is None:
             remark = _REMARK.match(clause) or _LIKED.match(clause)
-            cure = _cure(remark)
             if remark is not None and not last:
                 about = remark[1]
                 continue
-            clause = cure or clause
+            clause = _cure(remark) or clause
         remarks.append(clause)
     return tuple(remarks)
 
@@ -171,9 +170,7 @@ def _phrase(taken: re.Match[str]) -> str:
 def _cure(match: re.Match[str] | None) -> str | None:
     if match is not None and match.re is _LIKED and re.search(r"need|want|use", match[0][: match.start(1)]):
         return f"remove {match[1]}"
-    too = (
-        None
-        if match is None or match.re is not _REMARK
-        else re.fullmatch(r"(?:far |much |a bit |way )*too (\w+)", match[2])
-    )
-    return None if match is None or too is None or too[1] not in _CURES else f"make {match[1]} {_CURES[too[1]]}"
+    if match is None or match.re is not _REMARK:
+        return None
+    too = re.fullmatch(r"(?:far |much |a bit |way )*too (\w+)", match[2])
+    return f"make {match[1]} {_CURES[too[1]]}" if too is not None and too[1] in _CURES else None

@@ -12,7 +12,7 @@ from diorama_core.editing.relations import Relation, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import OPENING_CATEGORIES
-from diorama_core.text.edit_lengths import Subject, length_in, without_lengths
+from diorama_core.text.edit_lengths import length_in, without_lengths
 from diorama_core.text.edit_plan import Align, Copy, Edit, Exchange, Measure, Place, Rename, SetState, Shift, Side
 from diorama_core.text.phrases import NUMBERS, PlacePhrase, split_places
 from diorama_core.text.selecting import Selector
@@ -111,28 +111,22 @@ OFF_WALL_M = 0.2
 """Where no length is said."""
 
 
-def object_edits(selector: Selector, clause: str, subject: Subject) -> tuple[Edit, ...] | None:
+def object_edits(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     """The edits of objects that a clause asks for; None where it says something else.
-
-    Args:
-        selector: finds objects that the clause names.
-        clause: lower case.
-        subject: the ids that a phrase means.
 
     Raises:
         EditRefused: the clause is one of these, and names what is not there.
     """
     if len(each := list(_LENGTH_AND_SIDE.finditer(clause))) > 1 and clause.startswith(("make ", "set ")):
-        ids = list(subject(selector, clause[: each[0].start()].partition(" ")[2]))
+        ids = selector.subject(clause[: each[0].start()].partition(" ")[2])
         return tuple(Measure(objects=ids, side=_SIDES[m[1]][0], to_m=length_in(m[0]) or 0.0) for m in each)
     for read in (_measure, _off_wall, _state, _copy, _exchange, _rename, _align):
-        edits = read(selector, clause, subject)
-        if edits is not None:
-            return (edits,)
-    return _measures(selector, clause, subject)
+        if (edit := read(selector, clause)) is not None:
+            return (edit,)
+    return _measures(selector, clause)
 
 
-def _measure(selector: Selector, clause: str, subject: Subject) -> Measure | None:
+def _measure(selector: Selector, clause: str) -> Measure | None:
     """ "make the sofa 2 m wide", "make the plant half as tall", "set the width of the desk to 1.4 m"."""
     length = length_in(clause)
     plain = " ".join(without_lengths(clause).split())
@@ -142,7 +136,7 @@ def _measure(selector: Selector, clause: str, subject: Subject) -> Measure | Non
     side_word = match["side"]
     side, sign = _SIDES.get(side_word, ("width", 1.0))
     groups = match.groupdict()
-    ids = list(subject(selector, match["who"]))
+    ids = selector.subject(match["who"])
     if times := groups.get("times"):
         return Measure(objects=ids, side=side, factor=_TIMES.get(times) or float(times.split()[0]))
     verb = groups.get("verb")
@@ -150,7 +144,7 @@ def _measure(selector: Selector, clause: str, subject: Subject) -> Measure | Non
         sign = -1.0
     relative = side_word.endswith("er") or groups.get("to") == "by" or verb in ("increase", "reduce", "decrease")
     if length is None:
-        if not (relative or side_word.endswith("er")):
+        if not relative:
             return None  # "make the shelf wide" is a look of it
         return Measure(objects=ids, side=side, factor=STEP_FACTOR if sign > 0 else 1.0 / STEP_FACTOR)
     if relative and groups.get("to") != "to":
@@ -158,50 +152,48 @@ def _measure(selector: Selector, clause: str, subject: Subject) -> Measure | Non
     return Measure(objects=ids, side=side, to_m=length)
 
 
-def _measures(selector: Selector, clause: str, subject: Subject) -> tuple[Edit, ...] | None:
+def _measures(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     """ "make the rug 3 by 2 m", "make the sideboard 1.6 m", "make the table as high as the desk"."""
     if (like := _AS_ANOTHER.match(clause)) is not None:
         side = _SIDES.get(like[2] or like[3], ("width", 1.0))[0]
         length = float(selector.scene.object(selector.targets(like[4])[0]).size_m[_AXES[side]])
-        return (Measure(objects=list(subject(selector, like[1])), side=side, to_m=length),)
+        return (Measure(objects=selector.subject(like[1]), side=side, to_m=length),)
     both = _BOTH_SIDES.match(clause)
     one = None if length_in(clause) is None else _ONE_LENGTH.match(" ".join(without_lengths(clause).split()))
     if both is not None:
         units = [0.01 if (u or both[5]) == "cm" else 1.0 for u in (both[3], both[5])]
-        lengths, ids = sorted(float(n) * u for n, u in zip((both[2], both[4]), units)), subject(selector, both[1])
+        lengths, ids = sorted(float(n) * u for n, u in zip((both[2], both[4]), units)), selector.subject(both[1])
         sides = sorted(("depth", "width"), key=lambda s: float(selector.scene.object(ids[0]).size_m[_AXES[s]]))
     elif one is not None and one[1] not in ("the room", "the ceiling"):
-        ids, lengths = subject(selector, one[1]), [length_in(clause) or 0.0]
-        if re.search(r"\binch(?:es)?\b", clause) and selector.scene.object(ids[0]).category in (
-            "television",
-            "monitor",
-        ):
+        ids, lengths = selector.subject(one[1]), [length_in(clause) or 0.0]
+        item = selector.scene.object(ids[0])
+        if re.search(r"\binch(?:es)?\b", clause) and item.category in ("television", "monitor"):
             lengths = [SCREEN_WIDTH * lengths[0]]
-        sides = [max(_AXES, key=lambda s: float(selector.scene.object(ids[0]).size_m[_AXES[s]]))]
+        sides = [max(_AXES, key=lambda s: float(item.size_m[_AXES[s]]))]
     else:
         return None
     return tuple(
-        Measure(objects=list(ids), side=cast("Literal['width', 'depth', 'height']", side), to_m=length)
+        Measure(objects=ids, side=cast("Literal['width', 'depth', 'height']", side), to_m=length)
         for side, length in zip(sides, lengths, strict=True)
     )
 
 
-def _off_wall(selector: Selector, clause: str, subject: Subject) -> Shift | None:
+def _off_wall(selector: Selector, clause: str) -> Shift | None:
     match = _OFF_WALL.match(" ".join(without_lengths(clause).split()))
     if match is None:
         return None
-    return Shift(objects=list(subject(selector, match[1])), off_wall_m=length_in(clause) or OFF_WALL_M)
+    return Shift(objects=selector.subject(match[1]), off_wall_m=length_in(clause) or OFF_WALL_M)
 
 
-def _state(selector: Selector, clause: str, subject: Subject) -> SetState | None:
+def _state(selector: Selector, clause: str) -> SetState | None:
     clause = re.sub(r"^(turn|switch) ((?:the|all|my) .+) (on|off)$", r"\1 \3 \2", clause)
     match = _STATE.match(clause)
     if match is None:
         return None
-    return SetState(objects=list(subject(selector, match[2])), state=_STATES[match[1]])
+    return SetState(objects=selector.subject(match[2]), state=_STATES[match[1]])
 
 
-def _copy(selector: Selector, clause: str, subject: Subject) -> Copy | None:
+def _copy(selector: Selector, clause: str) -> Copy | None:
     match = _COPIED.match(clause)
     if match is None:
         return None
@@ -209,40 +201,36 @@ def _copy(selector: Selector, clause: str, subject: Subject) -> Copy | None:
     count = int(many) if many.isdigit() else NUMBERS.get(many, 1)
     head, places = split_places(match["rest"])
     try:
-        ids = subject(selector, head)
+        ids = selector.subject(head)
     except EditRefused:  # the place may be what tells it from others: "the lamp on the desk"
         if not places:
             raise
-        return Copy(objects=list(subject(selector, match["rest"])), count=count)
+        return Copy(objects=selector.subject(match["rest"]), count=count)
     wanted = places_of_phrases(selector, places)
     if _OTHER_SIDE.search(match["rest"]) and len(wanted) == 1:
-        on_left = is_met(
-            selector.scene, ids[0], Relation("left of", tuple(wanted[0].targets)), RoomFrame.of(selector.scene)
-        )
+        at_left = Relation("left of", tuple(wanted[0].targets))
+        on_left = is_met(selector.scene, ids[0], at_left, RoomFrame.of(selector.scene))
         wanted = [Place(relation="right of" if on_left else "left of", targets=wanted[0].targets)]
-    return Copy(objects=list(ids), count=count, places=wanted)
+    return Copy(objects=ids, count=count, places=wanted)
 
 
-def _exchange(selector: Selector, clause: str, subject: Subject) -> Exchange | None:
-    match = _EXCHANGED.match(clause)
-    both = _BOTH_EXCHANGED.match(clause)
-    if match is None and both is None:
-        return None
+def _exchange(selector: Selector, clause: str) -> Exchange | None:
+    match, both = _EXCHANGED.match(clause), _BOTH_EXCHANGED.match(clause)
     if both is not None and not re.search(r" (?:for|with|and) ", both[1]):
-        pair = subject(selector, re.sub(r"\b(?:two|2|both)\b", "", f"all {both[1]}"))
-        pair = tuple(i for i in pair if i in selector.selected) or pair
+        pair = selector.subject(re.sub(r"\b(?:two|2|both)\b", "", f"all {both[1]}"))
+        pair = [i for i in pair if i in selector.selected] or pair
         if len(pair) != 2:
             raise EditRefused(f"there are {len(pair)} of these; say which two change places, or select two")
-        return Exchange(objects=list(pair))
+        return Exchange(objects=pair)
     if match is None:
         return None
-    first, second = (subject(selector, words) for words in (match[1], match[2]))
+    first, second = (selector.subject(words) for words in (match[1], match[2]))
     if len(first) != 1 or len(second) != 1:
         raise EditRefused("two objects can change places; name one of each")
     return Exchange(objects=[first[0], second[0]])
 
 
-def _rename(selector: Selector, clause: str, subject: Subject) -> Rename | None:
+def _rename(selector: Selector, clause: str) -> Rename | None:
     match = _NAMED.match(clause)
     if match is None:
         return None
@@ -250,24 +238,23 @@ def _rename(selector: Selector, clause: str, subject: Subject) -> Rename | None:
     joint = next((w for w in ("to", "as", "into") if w in words[1:-1]), None)
     if joint is not None:
         at = words.index(joint)
-        return Rename(
-            objects=list(subject(selector, " ".join(words[:at])))[:1], to=" ".join(words[at + 1 :]).strip(_QUOTES)
-        )
+        ids = selector.subject(" ".join(words[:at]))
+        return Rename(objects=ids[:1], to=" ".join(words[at + 1 :]).strip(_QUOTES))
     for cut in range(len(words) - 1, 0, -1):
         try:
-            ids = subject(selector, " ".join(words[:cut]))
+            ids = selector.subject(" ".join(words[:cut]))
         except EditRefused:
             continue
         name = " ".join(words[cut:]).strip(_QUOTES)
         if name and len(ids) == 1:
-            return Rename(objects=[ids[0]], to=name)
+            return Rename(objects=ids, to=name)
     raise EditRefused(f"“{clause}”: which object, and what name? For example: call the plant ficus")
 
 
-def _align(selector: Selector, clause: str, subject: Subject) -> Align | None:
+def _align(selector: Selector, clause: str) -> Align | None:
     for pattern, how in ((_LINED, "in line"), (_LEVELLED, "in line"), (_SPACED, "evenly")):
         match = pattern.match(clause)
         if match is None or split_places(match[1])[1] or re.search(r"\bwith\b", match[1]):
             continue
-        return Align(objects=list(subject(selector, match[1])), how=cast("Literal['in line', 'evenly']", how))
+        return Align(objects=selector.subject(match[1]), how=cast("Literal['in line', 'evenly']", how))
     return None

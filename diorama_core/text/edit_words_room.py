@@ -8,16 +8,18 @@ from typing import Literal, cast
 
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import OPENING_CATEGORIES
+from diorama_core.scene.types import PlaneRole
 from diorama_core.text.edit_lengths import length_in
-from diorama_core.text.edit_plan import Edit, InsertOpening, Light, Paint, RoomLength
+from diorama_core.text.edit_plan import Edit, InsertOpening, Light, Paint, RoomLength, Side
 from diorama_core.text.edit_room import covering_in_words, wall_on
 from diorama_core.text.edit_words_objects import side_in
+from diorama_core.text.phrases import split_list
 from diorama_core.text.selecting import Selector
 
-_ROLES: dict[str, tuple[Literal["walls", "floor", "ceiling"], str]] = {
-    "wall": ("walls", "wall"),
-    "floor": ("floor", "floor"),
-    "ceiling": ("ceiling", "ceiling"),
+_PARTS: dict[PlaneRole, Literal["walls", "floor", "ceiling"]] = {
+    "wall": "walls",
+    "floor": "floor",
+    "ceiling": "ceiling",
 }
 _PART = re.compile(
     r"\b(?:all (?:of )?)?(?:the |my |our |its |this |that )?(?:room's )?"
@@ -35,7 +37,7 @@ _SPARED = re.compile(
 )
 """“all walls beige except the back wall”."""
 _BEHIND = re.compile(r"\bbehind (?P<at>(?:the|my|this) .+?)(?=\s+(?:in|with|to)\b|$)")
-_GROWS = {
+_GROWS: dict[Literal["height", "length", "width"], str] = {
     "height": "higher|taller|high|tall|lower",
     "length": "longer|deeper|long|deep|shorter|bigger|larger|smaller",
     "width": "wider|wide|broader|narrower",
@@ -57,24 +59,17 @@ _LAMPS = r"(?:the |all (?:of )?(?:the )?)?(?:lights|lamps|light)"
 def room_edits(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     """The edits of the room that a clause asks for; None where it is about something else.
 
-    Args:
-        selector: finds objects that the clause names.
-        clause: lower case.
-
     Raises:
         EditRefused: it is about the room, and cannot be done.
     """
-    for read in (_lengths, _light, _openings, _surfaces):
-        edits = read(selector, clause)
-        if edits is not None:
-            return edits
-    return None
+    readings = (read(selector, clause) for read in (_lengths, _light, _openings, _surfaces))
+    return next((edits for edits in readings if edits is not None), None)
 
 
 def _surfaces(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     asked = _ASKED.match(clause)
     rest = clause[asked.end() :] if asked is not None else clause
-    parts = [p for p in re.split(r",\s*(?:and\s+)?|\band\b", rest) if p.strip()]
+    parts = split_list(rest)
     if len(parts) > 1 and all(_PART.search(p) for p in parts):
         surfaces = [_surface(selector, p) for p in parts]
         return tuple(e for e in surfaces if e is not None) if None not in surfaces else None
@@ -95,10 +90,11 @@ def _surface(selector: Selector, text: str) -> Paint | None:
     part = _PART.search(text)
     if part is None:
         return None
-    planes = selector.scene.architecture.by_role(cast("Literal['wall', 'floor', 'ceiling']", _ROLES[part["part"]][1]))
+    role = cast(PlaneRole, part["part"])
+    planes = selector.scene.architecture.by_role(role)
     left, right = text[: part.start()], text[part.end("at") if part["at"] else part.end() :]
     behind = part["at"]
-    if behind is None and part["part"] == "wall" and (where := _BEHIND.match(text[part.end() :].strip())) is not None:
+    if behind is None and role == "wall" and (where := _BEHIND.match(text[part.end() :].strip())) is not None:
         behind, right = _cut(selector, where["at"])
     elif behind is not None:
         behind, more = _cut(selector, behind)
@@ -107,22 +103,18 @@ def _surface(selector: Selector, text: str) -> Paint | None:
     if not look or not planes or covering_in_words(look, planes[0]) is None:
         return None
     at = selector.targets(behind)[0] if behind else ""
-    wall = side_in(part["side"] or "") if part["part"] == "wall" else ""
-    return Paint(part=_ROLES[part["part"]][0], colour=look, behind=at, wall=wall)
+    wall = side_in(part["side"] or "") if role == "wall" else ""
+    return Paint(part=_PARTS[role], colour=look, behind=at, wall=wall)
 
 
 def _cut(selector: Selector, words: str) -> tuple[str, str]:
     """What names an object at the beginning of some words, and the rest: "the sofa terracotta"."""
-    words_of_clause = words.split()
-    for end in range(2, len(words_of_clause) + 1):
-        try:
-            selector.targets(" ".join(words_of_clause[:end]))
-        except EditRefused:
-            continue
-        longer = next(
-            (k for k in range(len(words_of_clause), end, -1) if _is_label(selector, words_of_clause[:k])), end
-        )
-        return " ".join(words_of_clause[:longer]), " ".join(words_of_clause[longer:])
+    split = words.split()
+    for end in range(2, len(split) + 1):
+        with suppress(EditRefused):
+            selector.targets(" ".join(split[:end]))
+            longer = next((k for k in range(len(split), end, -1) if _is_label(selector, split[:k])), end)
+            return " ".join(split[:longer]), " ".join(split[longer:])
     return words, ""
 
 
@@ -144,17 +136,15 @@ def _lengths(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     if made is None:
         return None
     command = f"{clause.split()[0]} {made[2]}"
+    said = length_in(command) is not None
     side = next((s for s, words in _GROWS.items() if re.search(rf"\b(?:{words})\b", command)), None)
-    side = "height" if made[1] == "ceiling" else side
-    if side is None and length_in(command) is not None:
+    if made[1] == "ceiling":
+        if re.search(r"\b(?:darker|lighter|brighter|paler)\b", command) or not (said or "er" in made[2]):
+            return None
+        side = "height"
+    elif side is None and said:
         side = "width" if "widen" in command else "length"
-    if side is None or (made[1] == "ceiling" and length_in(command) is None and "er" not in made[2]):
-        return None
-    if made[1] == "ceiling" and re.search(r"\b(?:darker|lighter|brighter|paler)\b", command):
-        return None
-    return (
-        _length(cast("Literal['height', 'length', 'width']", side), command, shrinks=bool(_SHRINKS.search(command))),
-    )
+    return None if side is None else (_length(side, command, shrinks=bool(_SHRINKS.search(command))),)
 
 
 def _length(side: Literal["height", "length", "width"], words: str, *, shrinks: bool) -> RoomLength:
@@ -170,17 +160,15 @@ def _length(side: Literal["height", "length", "width"], words: str, *, shrinks: 
 def _light(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
     lamps = re.match(rf"^(?:turn|switch|put) (?:(on|off) {_LAMPS}|{_LAMPS} (on|off))$", clause)
     if lamps is not None:
-        return (Light(lamps="on" if (lamps[1] or lamps[2]) == "on" else "off"),)
+        return (Light(lamps="on" if "on" in lamps.groups() else "off"),)
     if re.match(rf"^make {_LIGHT} (?:a (?:bit|little) |much )?(?:warmer|cooler|colder)$", clause):
         raise EditRefused(
             "the light has its colour from the hour and the lamps; for example: make it evening, turn on the lamps"
         )
     bright = re.match(rf"^(?:make|turn) {_LIGHT} (?:a (?:bit|little) |much )?(brighter|lighter|darker|dimmer)$", clause)
+    bright = bright or re.match(rf"^(dim|brighten) {_LIGHT}$", clause)
     if bright is not None:
-        return (Light(brighter_ev=STOPS if bright[1] in ("brighter", "lighter") else -STOPS),)
-    dim = re.match(rf"^(dim|brighten) {_LIGHT}$", clause)
-    if dim is not None:
-        return (Light(brighter_ev=STOPS if dim[1] == "brighten" else -STOPS),)
+        return (Light(brighter_ev=STOPS if bright[1] in ("brighter", "lighter", "brighten") else -STOPS),)
     timed = re.match(
         r"^(?:make it|set the (?:time|hour|light)(?: of day)?(?: to)?|it should be"
         r"|(?:show|let me see|let us see) (?:me )?(?:it|the room|this room)(?: in| at| by)?) (.+?)"
@@ -213,6 +201,4 @@ def _openings(selector: Selector, clause: str) -> tuple[Edit, ...] | None:
         return None
     side = {"far": "back", "opposite": "back"}.get(match[2] or "", match[2] or "")
     behind = selector.targets(match[3])[0] if match[3] else ""
-    return (
-        InsertOpening(what=match[1], wall=cast("Literal['', 'left', 'right', 'back', 'front']", side), behind=behind),
-    )
+    return (InsertOpening(what=match[1], wall=cast("Side", side), behind=behind),)

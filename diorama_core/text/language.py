@@ -189,16 +189,14 @@ def edit_prompt(command: str, scene: Scene, selected: Sequence[str] = ()) -> str
     rows = []
     for item in scene.objects:
         edge = scene.support_of(item.id)
-        x, y, z = (round(float(v), 2) for v in item.pose.position)
-        depth, width, height = (round(float(v), 2) for v in item.size_m)
         rows.append(
             {
                 "id": item.id,
                 "name": tidy_label(item.label),
                 "category": item.category,
-                "centre_m": [x, y, z],
+                "centre_m": [round(float(v), 2) for v in item.pose.position],
                 "heading_deg": round(float(item.pose.yaw_rad) * 57.29578),
-                "depth_width_height_m": [depth, width, height],
+                "depth_width_height_m": [round(float(v), 2) for v in item.size_m],
                 "held_by": None if edge is None else edge.parent,
             }
         )

@@ -53,7 +53,7 @@ class Look:
     """A colour, a material, or both, in words that were understood."""
 
     words: str
-    colour: Colour | None
+    colour: Colour
     finish: Finish | None
     material: str = ""
 

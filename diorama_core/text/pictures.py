@@ -89,13 +89,11 @@ def _generate(words: str, endpoint: ImageSettings) -> bytes:
             "to compose the room from the library"
         ) from error
     data = made.data[0].b64_json if made.data else None
+    if not data:
+        raise UnavailableError(f"{endpoint.base_url} returned no base64 picture; choose a model that does")
     try:
-        return base64.b64decode(data or "", validate=True) or _no_picture(endpoint)
+        return base64.b64decode(data, validate=True)
     except ValueError as error:
         raise UnavailableError(
             f"{endpoint.base_url} returned something that is no base64 picture; choose another model"
         ) from error
-
-
-def _no_picture(endpoint: ImageSettings) -> bytes:
-    raise UnavailableError(f"{endpoint.base_url} returned no base64 picture; choose a model that does")

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field, replace
 
+from diorama_core.editing.habits import usual_relations_of
 from diorama_core.editing.relations import OF_ROOM, SEATS, RelationKind
 from diorama_core.geometry.openings import OPENING_CATEGORIES
 from diorama_core.library.taxonomy import broad, category, having, is_furniture, resolve
 from diorama_core.synthesis import RoomKind
-from diorama_core.text.customs import usual_relations_of
 from diorama_core.text.foreign_words import to_english
 from diorama_core.text.phrases import MAX_OF_A_KIND, NUMBERS, NounPhrase, PlacePhrase, noun_phrase, split_places
 from diorama_core.text.rows import with_marks
@@ -58,6 +58,7 @@ _REWRITES = (
 """Phrases that say the same in other words, brought to one form."""
 _ASKED = re.compile(r"(?:an?|one|two|three|four|five|six|\d+|some|several|many)\b")
 """How a clause begins that asks for something of its own, and says nothing more of what came before."""
+_SAYS_NOTHING = re.compile(r"(?:there|i|we|want|need|would|like|please|room|one|two|three|some)(?: .*)?")
 _SEATS_FOR = re.compile(
     r"\bfor (two|three|four|five|six|seven|eight|nine|ten|twelve|\d\d?)(?: people| persons| guests| diners)?(?=,|;|\.|$| and\b| with\b)"
 )
@@ -71,6 +72,7 @@ _NOT_WISHED = re.compile(
     r"((?:[a-z-]+ )*?[a-z-]+?(?:,? (?:or|nor) (?:any |a |an |no )?(?:[a-z-]+ )*?[a-z-]+?)*)(?=,|;|\.| and | but | with | in | on | at | by |$)"
 )
 """What the room is to do without: "no curtains", "without a rug or pictures"."""
+_BEFORE_ROOM = re.compile(r"\b(?:a|an|the|small|large|big|cosy|cozy|tiny|spacious|modern|bright)\s*$")
 _NOT_PLACES = re.compile(
     r"^(?:the |a |an |this )?(?:[a-z]+ )?(?:room|bedroom|kitchen|office|floor|ground|space|house|home|apartment|style|corner of .*)$"
 )
@@ -154,17 +156,15 @@ def read_prompt(prompt: str) -> RoomRequest:
         for clause in _JOINTS.split(sentence):
             _read(reading, clause.strip())
     _add_seats(reading, room, text)
-    size = 1.25 if re.search(r"\b(large|big|spacious|huge)\b.{0,20}\broom\b", text) else 1.0
-    size = (
-        0.85
-        if re.search(
-            r"\b(small|tiny|cosy|cozy|little|corner|nook)\b.{0,12}\b(room|bedroom|office|corner|nook|kitchen|study)\b",
-            text,
-        )
-        else size
-    )
     ignored = tuple(dict.fromkeys(reading.ignored))
-    return RoomRequest(room, tuple(reading.objects), ignored, size, named, excluded)
+    return RoomRequest(room, tuple(reading.objects), ignored, _size(text), named, excluded)
+
+
+def _size(text: str) -> float:
+    small = r"\b(small|tiny|cosy|cozy|little|corner|nook)\b.{0,12}\b(room|bedroom|office|corner|nook|kitchen|study)\b"
+    if re.search(small, text):
+        return 0.85
+    return 1.25 if re.search(r"\b(large|big|spacious|huge)\b.{0,20}\broom\b", text) else 1.0
 
 
 def _without_unwished(text: str) -> tuple[str, tuple[str, ...]]:
@@ -197,11 +197,7 @@ def _read(reading: _Reading, clause: str) -> None:
         for place, text in waiting:
             _place(reading, index, place, text)
     asked = index is None or (phrase is None and _ASKED.match(head) is not None)
-    if (
-        asked
-        and unknown
-        and not re.fullmatch(r"(?:there|i|we|want|need|would|like|please|room|one|two|three|some)(?: .*)?", unknown)
-    ):
+    if asked and unknown and not _SAYS_NOTHING.fullmatch(unknown):
         reading.ignored.append(unknown)
     subject = index
     for place in places:
@@ -338,9 +334,8 @@ def _referent(reading: _Reading, index: int | None, kind: RelationKind, several:
         return next((name for name in before if is_furniture(name)), before[0])
     carriers = [name for name in before if category(name).supports_objects]
     what = reading.objects[index].category if index is not None else ""
-    usual = {
-        name for relation, names in (usual_relations_of(what) if what else ()) if relation == "on" for name in names
-    }
+    relations = usual_relations_of(what) if what else ()
+    usual = {name for relation, names in relations if relation == "on" for name in names}
     # A lamp is on the table rather than on one of its chairs, a cushion on a chair.
     unsat = [name for name in carriers if name not in SEATS or broad(name) in usual]
     return next(iter([*unsat, *carriers]), before[0])
@@ -355,10 +350,10 @@ def _target(reading: _Reading, words: str, index: int | None, kind: RelationKind
         return _referent(reading, index, kind, phrase.count > 1)
     if not phrase.label:
         return None
-    kin = next((o.category for o in reading.objects if o.category == phrase.category), None)
-    kin = kin or next(
-        (o.category for o in reading.objects if o.category.endswith(f" {phrase.category}") and phrase.definite), None
-    )
+    known = [o.category for o in reading.objects]
+    kin = phrase.category if phrase.category in known else None
+    if kin is None and phrase.definite:
+        kin = next((name for name in known if name.endswith(f" {phrase.category}")), None)
     if kin is None and phrase.category not in OPENING_CATEGORIES:
         # "A lamp on each night stand" means at least two.
         count = max(phrase.count, 2) if phrase.every else phrase.count
@@ -375,12 +370,9 @@ def _room(text: str) -> tuple[RoomKind, str]:
         match = re.search(rf"\b(?:a |an |the )?(?:[a-z'-]+ ){{0,2}}?{words}\b(?! (?:{_COMPOUNDS})s?\b)", text)
         if match and not resolve(match.group()).exact:
             start = text.index(words, match.start())
-            if noun_phrase(text[match.start() : start])[0] is None and not re.match(r"(?:in|for|of)\b", match.group()):
-                start_of_name = match.start()
-                return kind, f"{text[:start_of_name]} , {text[start + len(words) :]}"
-            before = re.sub(
-                r"\b(?:a|an|the|small|large|big|cosy|cozy|tiny|spacious|modern|bright)\s*$", "", text[:start]
-            )
+            before = text[: match.start()]
+            if noun_phrase(text[match.start() : start])[0] is not None or re.match(r"(?:in|for|of)\b", match.group()):
+                before = _BEFORE_ROOM.sub("", text[:start])
             return kind, f"{before} , {text[start + len(words) :]}"
     return _guess_room(text), text
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from diorama_core.editing.habits import usual_relations_of
 from diorama_core.editing.relations import LONG_RATIO, SEATS, Relation
 from diorama_core.library.record import Shape
 from diorama_core.library.taxonomy import broad, category, having
 from diorama_core.scene.types import Scene
-from diorama_core.text.customs import usual_relations_of
 from diorama_core.text.prompt import RequestedObject, Wish
 
 _FIRST = ("bed", "sofa", "kitchen counter", "bathtub", "desk", "table", "wardrobe", "tv stand", "piano", "bookshelf")

@@ -6,31 +6,52 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from diorama_core.editing.habits import usual_relations_of
 from diorama_core.editing.relations import SEATS, is_long
 from diorama_core.library.language import size_request
 from diorama_core.library.record import Shape, ShapeLibrary
-from diorama_core.library.taxonomy import broad, carrier_in, category, having
+from diorama_core.library.taxonomy import broad, carrier_in, category, having, with_kin
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
-from diorama_core.synthesis import groups
+from diorama_core.synthesis import RoomKind, groups
 from diorama_core.synthesis.finishes import choose_finishes
 from diorama_core.synthesis.furnisher import Furnisher
 from diorama_core.synthesis.grammar import RECIPES
 from diorama_core.synthesis.openings import add_door, add_window
 from diorama_core.synthesis.plan import room_plan
-from diorama_core.text.customs import ESSENTIALS, stands_in_for, usual_relations_of
 from diorama_core.text.looks import fitting_shapes, has_look, look_of
 from diorama_core.text.phrases import MAX_OF_A_KIND
 from diorama_core.text.placed_rows import rows_of
 from diorama_core.text.prompt import RequestedObject, RoomRequest
 from diorama_core.text.requested_relations import SEAT_WIDTH_M, seats_at
 
+ESSENTIALS: dict[RoomKind, tuple[tuple[str, int], ...]] = {
+    "kitchen": (("kitchen counter", 1), ("stove", 1), ("refrigerator", 1)),
+    "bathroom": (("sink", 1), ("toilet", 1), ("bathtub", 1)),
+    "bedroom": (("bed", 1),),
+    "dining": (("table", 1), ("chair", 4)),
+    "study": (("desk", 1), ("office chair", 1)),
+    "office": (("desk", 1), ("office chair", 1)),
+}
+"""Added where a prompt names the kind of room and nothing that does the same."""
+DECOR: dict[RoomKind, tuple[str, ...]] = {
+    "living": ("ceiling lamp", "picture"), "bedroom": ("ceiling lamp", "picture"), "office": ("ceiling lamp",),
+    "kitchen": ("ceiling lamp", "wall cabinet"), "dining": ("ceiling lamp", "picture"),
+    "study": ("ceiling lamp", "picture"), "lab": ("ceiling lamp",), "bathroom": ("ceiling lamp", "mirror"),
+    "corridor": ("ceiling lamp", "picture"),
+}  # fmt: skip
+"""What is added at last, where nothing of its kind was asked for; it hangs, so it takes no room."""
 FREE_SHARE = 0.28
 """At most this share of a room's floor is under furniture."""
 MIN_AREA_M2, MIN_SHARE, MIN_SIDE_M = 8.5, 0.6, 2.3
 """Rooms are no smaller, nor smaller than this share of those of their kind: a few pieces are lost in large ones."""
 AROUND_ROWS_M = 0.7
 """Free floor around objects in rows."""
+
+
+def stands_in_for(name: str, present: frozenset[str]) -> bool:
+    """Whether something asked for does what an essential of a room does."""
+    return bool(with_kin(name, *category(name).instead or ()) & present)
 
 
 def with_essentials(request: RoomRequest) -> tuple[list[RequestedObject], tuple[str, ...]]:
@@ -166,7 +187,7 @@ def dress(scene: Scene, object_id: str, shape: Shape, appearance: Sequence[str])
     """
     for word in appearance:
         look = look_of(word)
-        if look is not None and look.colour is not None and not has_look(shape, word) and word not in ("light", "dark"):
+        if look is not None and not has_look(shape, word) and word not in ("light", "dark"):
             scene = edits.refinish(edits.recolour(scene, object_id, look.colour), object_id, look.finish)
     return scene
 

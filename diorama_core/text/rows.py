@@ -44,15 +44,14 @@ def with_marks(text: str) -> tuple[str, tuple[str, ...]]:
     """A description in which marks stand for its rows, and the phrases of rows that hold too many."""
     too_many: list[str] = []
 
-    def mark(match: re.Match[str], before: str, after: str) -> str:
+    def mark(match: re.Match[str]) -> str:
         rows, each = _count(match[1]), _count(match[2] or "0")
         if rows * max(each, 1) > MAX_IN_ROWS:
             too_many.append(match[0])
             return match[0]
-        return f"{before}rowed-{rows}x{each}{after}"
+        return f"rowed-{rows}x{each}"
 
-    text = _IN_ROWS.sub(lambda m: mark(m, "", ""), text)
-    return _ROWS_OF.sub(lambda m: mark(m, "", ""), text), tuple(too_many)
+    return _ROWS_OF.sub(mark, _IN_ROWS.sub(mark, text)), tuple(too_many)
 
 
 def _count(word: str) -> int:
@@ -61,9 +60,8 @@ def _count(word: str) -> int:
 
 def without_marks(words: Sequence[str]) -> tuple[list[str], tuple[int, int] | None]:
     """Words without a mark, and what it says: how many rows of how many, 0 where that is open."""
-    match = next((m for word in words if (m := _MARK.fullmatch(word))), None)
-    mark = (int(match[1]), int(match[2])) if match else None
-    return [word for word in words if not _MARK.fullmatch(word)], mark
+    marks = [(int(m[1]), int(m[2])) for word in words if (m := _MARK.fullmatch(word))]
+    return [word for word in words if not _MARK.fullmatch(word)], marks[0] if marks else None
 
 
 @dataclass(frozen=True, eq=False)

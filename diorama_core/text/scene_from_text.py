@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -19,7 +20,7 @@ from diorama_core.perception.language.client import LmmSettings
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.render.slabs import plane_surfaces
-from diorama_core.scene.types import Camera, Intrinsics, Scene
+from diorama_core.scene.types import Camera, Intrinsics, Plane, Scene
 from diorama_core.synthesis import to_photo_world
 from diorama_core.synthesis.cameras import level_pose
 from diorama_core.synthesis.finishes import finish_textures
@@ -137,11 +138,8 @@ def unmet(prompt: str, scene: Scene) -> tuple[str, ...]:
     """
     request = read_prompt(prompt)
     present_counts = Counter(o.category for o in scene.objects)
-    lines = []
-    for asked in request.objects:
-        number = _take(present_counts, asked)
-        if number < asked.count:
-            lines.append(_line(asked, number))
+    taken = [(asked, _take(present_counts, asked)) for asked in request.objects]
+    lines = (_line(asked, number) for asked, number in taken if number < asked.count)
     return (*lines, *(f"the library has nothing called “{words}”" for words in request.ignored))
 
 
@@ -172,21 +170,17 @@ def best_viewpoint(scene: Scene, library: ShapeLibrary, size: tuple[int, int], w
         weights: by object id, how much it matters that it is seen; 0 where it is left out.
     """
     meshes = [(library.mesh(o.shape_id), o.pose.matrix) for o in scene.objects]
-    planes = [(_front(scene, k), np.eye(4)) for k in range(len(scene.architecture.planes))]
+    planes = [(_front(p), np.eye(4)) for p in scene.architecture.planes]
     caster = MeshCaster([*meshes, *planes])
     worth = np.array([weights.get(o.id, 0.0) for o in scene.objects])
-    best: tuple[float, Camera] | None = None
-    for camera in _candidates(scene, size, worth):
-        score = _score(caster, camera, worth)
-        if best is None or score > best[0]:
-            best = (score, camera)
+    best = max(_candidates(scene, size, worth), key=lambda camera: _score(caster, camera, worth), default=None)
     if best is None:
         raise ValueError("nobody could stand in this room")
-    return best[1]
+    return best
 
 
-def _front(scene: Scene, index: int) -> trimesh.Trimesh:
-    front, _ = plane_surfaces(scene.architecture.planes[index])
+def _front(plane: Plane) -> trimesh.Trimesh:
+    front, _ = plane_surfaces(plane)
     return trimesh.Trimesh(front.vertices, front.faces, process=False)
 
 
@@ -199,7 +193,8 @@ def _candidates(scene: Scene, size: tuple[int, int], worth: Float[np.ndarray, " 
     if worth.sum() > 0:
         middle = np.average([o.pose.position for o in scene.objects], axis=0, weights=worth)
     for clearance in (OBJECT_CLEARANCE_M, 0.15, 0.0):
-        free = [eye for eye in _places(low, high) if _stands_free(scene, eye, clearance)]
+        places = (np.array([x, y, EYE_M]) for x, y in itertools.product(*np.linspace(low, high, PLACES).T))
+        free = [eye for eye in places if _stands_free(scene, eye, clearance)]
         for eye in free:
             away = middle - eye
             distance = float(np.hypot(*away[:2]))
@@ -213,29 +208,18 @@ def _candidates(scene: Scene, size: tuple[int, int], worth: Float[np.ndarray, " 
             return
 
 
-def _places(low: Float[np.ndarray, "2"], high: Float[np.ndarray, "2"]) -> Iterator[Float[np.ndarray, "3"]]:
-    for x in np.linspace(low[0], high[0], PLACES):
-        for y in np.linspace(low[1], high[1], PLACES):
-            yield np.array([x, y, EYE_M])
-
-
 def _stands_free(scene: Scene, eye: Float[np.ndarray, "3"], clearance_m: float) -> bool:
     """Whether a person fits: inside the walls, and beside what reaches up to the eyes."""
     if any(p.normal @ eye - p.offset < 0.9 * WALL_CLEARANCE_M for p in scene.architecture.by_role("wall")):
         return False
-    for item in scene.objects:
-        local = np.abs((eye - item.pose.position) @ item.pose.R_world_object)
-        if (local < item.size_m / 2 + clearance_m).all():
-            return False
-    return True
-
-
-def _probe(camera: Camera) -> Camera:
-    return Camera(camera.intrinsics.resize(*PROBE_PX), camera.T_world_camera)
+    local = (
+        (np.abs((eye - o.pose.position) @ o.pose.R_world_object), o.size_m / 2 + clearance_m) for o in scene.objects
+    )
+    return not any((away < reach).all() for away, reach in local)
 
 
 def _score(caster: MeshCaster, camera: Camera, worth: Float[np.ndarray, " n"]) -> float:
-    seen = caster.buffers(_probe(camera))
+    seen = caster.buffers(camera.resize(*PROBE_PX))
     count = len(worth)
     pixels = np.bincount(seen.instance[seen.instance >= 0].ravel(), minlength=count)[:count]
     rim = np.concatenate([seen.instance[0], seen.instance[-1], seen.instance[:, 0], seen.instance[:, -1]])

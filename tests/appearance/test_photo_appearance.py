@@ -12,7 +12,7 @@ from diorama_core.appearance.photo_appearance import photo_appearance, texture_n
 from diorama_core.artefacts import DetectedObject
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.render.picture import picture
-from diorama_core.render.raycast import render_buffers
+from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Camera, Intrinsics, PhotoMaterial, Pose, Scene, SceneObject
 
 LIBRARY = built_in_library()
@@ -41,7 +41,7 @@ def hung(shape_id: str, *, worn: bool) -> Scene:
 
 def detected(scene: Scene) -> tuple[DetectedObject, ...]:
     item = scene.objects[0]
-    mask = render_buffers([(LIBRARY.mesh(item.shape_id), item.pose.matrix)], camera()).silhouette
+    mask = MeshCaster([(LIBRARY.mesh(item.shape_id), item.pose.matrix)]).buffers(camera()).silhouette
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     box = (float(columns[0]), float(rows[0]), float(columns[-1] + 1), float(rows[-1] + 1))
     return (DetectedObject(item.id, item.category, item.label, box, mask, 1, 1.0),)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diorama_core.editing.clearances import clearances, room_before, set_clearance
+from diorama_core.editing.clearances import clear_of_walls, clearances, room_before, set_clearance
 from diorama_core.editing.plan_edits import empty_room
 from diorama_core.errors import EditRefused
 from diorama_core.scene.types import Pose, Scene, SceneObject, Support
@@ -97,3 +97,27 @@ def test_the_room_before_a_wall_is_its_length_across() -> None:
     assert room_before(ROOM, "ceiling").distance_m == pytest.approx(2.5)
     alone = replace(ROOM, architecture=replace(ROOM.architecture, planes=(ROOM.plane("wall_1"),)))
     assert room_before(alone, "wall_1") is None
+
+
+@pytest.mark.parametrize(
+    ("place", "yaw"),
+    [((1.95, 0.0), 0.0), ((1.99, 1.0), 0.7), ((1.9, 2.9), 0.3), ((-1.95, -2.95), 1.2), ((2.05, 0.0), 0.0)],
+)
+def test_what_is_put_at_a_wall_is_inside_the_room(place: tuple[float, float], yaw: float) -> None:
+    put = box("a", *place, yaw=yaw)
+    corners = replace(put, pose=clear_of_walls(ROOM, put)).corners_world[:, :2]
+    assert (np.abs(corners) <= np.array([2.0, 3.0]) + 1e-6).all()
+
+
+def test_what_is_free_stays() -> None:
+    put = box("a", 0.3, 0.4, yaw=0.5)
+    assert clear_of_walls(ROOM, put) == put.pose
+
+
+def test_walls_that_are_elsewhere_push_nothing() -> None:
+    """Behind a wall's end: the wall of another part of the room is in line with it."""
+    plane = next(p for p in ROOM.architecture.by_role("wall") if p.normal[0] < -0.9)
+    short = replace(plane, polygon=plane.polygon * np.array([1.0, 0.3, 1.0]))
+    room = replace(ROOM, architecture=replace(ROOM.architecture, planes=(short,)))
+    put = box("a", 1.95, 2.5)
+    assert clear_of_walls(room, put) == Pose.upright(put.pose.position, 0.0)

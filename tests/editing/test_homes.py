@@ -14,7 +14,7 @@ from diorama_core.multiview.one_scene import move_to_room
 from diorama_core.scene import edits
 from diorama_core.scene.schema import scene_from_json, scene_to_json
 from diorama_core.scene.support import check_scene
-from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.scene.types import Camera, Intrinsics, Pose, Scene, SceneObject, Support, rigid, yaw_rotation
 from diorama_core.synthesis.cameras import level_pose
 from tests.app.small_room import furnished_scene
 
@@ -45,8 +45,7 @@ def home() -> Scene:
 @pytest.fixture
 def turned() -> Scene:
     """A furnished room elsewhere, turned, with its door in another wall."""
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = yaw_rotation(0.7), [11.0, -3.0, 0.4]
+    T = rigid(yaw_rotation(0.7), np.array([11.0, -3.0, 0.4]))
     return move_to_room(with_door(furnished_scene(), "way-in", "wall_2", -0.3), T)
 
 

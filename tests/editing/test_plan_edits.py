@@ -25,24 +25,24 @@ from diorama_core.scene.room_edits import ceiling_height, move_plane, set_surfac
 from diorama_core.scene.support import check_scene
 from diorama_core.scene.types import Architecture, Pose, Scene, SceneObject, Support
 
+ROOM = empty_room(4.0, 3.0, 2.5)
+
 
 def lengths(scene: Scene) -> dict[str, float]:
     return {f.id: round(f.length_m, 6) for f in wall_feet(scene)}
 
 
 def test_four_walls_meet_in_four_corners_and_look_outward() -> None:
-    scene = empty_room(4.0, 3.0, 2.5)
-    assert sorted(lengths(scene).values()) == [3.0, 3.0, 4.0, 4.0]
-    assert len(corners(scene)) == 4
-    middle = scene.plane("floor").centre[:2]
-    for foot in wall_feet(scene):
+    assert sorted(lengths(ROOM).values()) == [3.0, 3.0, 4.0, 4.0]
+    assert len(corners(ROOM)) == 4
+    middle = ROOM.plane("floor").centre[:2]
+    for foot in wall_feet(ROOM):
         assert float(((foot.start + foot.end) / 2 - middle) @ foot.outward) > 0
 
 
 def test_a_corner_goes_where_it_is_dragged_and_the_room_stays_closed() -> None:
-    scene = empty_room(4.0, 3.0, 2.5)
-    corner = corners(scene)[0]
-    moved = move_corner(scene, corner.first, corner.second, np.array([0.3, -0.2]))
+    corner = corners(ROOM)[0]
+    moved = move_corner(ROOM, corner.first, corner.second, np.array([0.3, -0.2]))
     new = next(c for c in corners(moved) if (c.first, c.second) == (corner.first, corner.second))
     np.testing.assert_allclose(new.at, corner.at + np.array([0.3, -0.2]), atol=1e-9)
     assert len(corners(moved)) == 4
@@ -51,22 +51,18 @@ def test_a_corner_goes_where_it_is_dragged_and_the_room_stays_closed() -> None:
 
 @pytest.mark.parametrize("number", range(4))
 def test_every_wall_takes_a_typed_length(number: int) -> None:
-    scene = empty_room(4.0, 3.0, 2.5)
-    wall = wall_feet(scene)[number].id
-    changed = set_wall_length(scene, wall, 5.25)
+    wall = wall_feet(ROOM)[number].id
+    changed = set_wall_length(ROOM, wall, 5.25)
     assert lengths(changed)[wall] == pytest.approx(5.25)
     assert len(corners(changed)) == 4
 
 
 def test_a_wall_at_one_end_is_enough_and_none_is_refused() -> None:
-    scene = empty_room(4.0, 3.0, 2.5)
-    corner = corners(scene)[0]
-    two = Scene(
-        architecture=Architecture((scene.plane("floor"), scene.plane(corner.first), scene.plane(corner.second)))
-    )
+    corner = corners(ROOM)[0]
+    two = Scene(architecture=Architecture((ROOM.plane("floor"), ROOM.plane(corner.first), ROOM.plane(corner.second))))
     for wall in (corner.first, corner.second):
         assert lengths(set_wall_length(two, wall, 2.2))[wall] == pytest.approx(2.2)
-    one = Scene(architecture=Architecture((scene.plane("floor"), scene.plane(corner.first))))
+    one = Scene(architecture=Architecture((ROOM.plane("floor"), ROOM.plane(corner.first))))
     with pytest.raises(EditRefused, match="no other wall"):
         set_wall_length(one, corner.first, 2.0)
 
@@ -74,16 +70,15 @@ def test_a_wall_at_one_end_is_enough_and_none_is_refused() -> None:
 @pytest.mark.parametrize("length", [0.0, -1.0, 51.0, float("nan")])
 def test_what_is_no_length_of_a_wall_is_refused(length: float) -> None:
     with pytest.raises(EditRefused, match="cannot be"):
-        set_wall_length(empty_room(4.0, 3.0, 2.5), "wall_1", length)
+        set_wall_length(ROOM, "wall_1", length)
 
 
 def test_walls_that_do_not_meet_have_no_corner() -> None:
-    scene = empty_room(4.0, 3.0, 2.5)
     opposite = next(
-        (a.id, b.id) for a in wall_feet(scene) for b in wall_feet(scene) if float(a.outward @ b.outward) < -0.9
+        (a.id, b.id) for a in wall_feet(ROOM) for b in wall_feet(ROOM) if float(a.outward @ b.outward) < -0.9
     )
     with pytest.raises(EditRefused, match="do not meet"):
-        move_corner(scene, *opposite, np.array([0.1, 0.1]))
+        move_corner(ROOM, *opposite, np.array([0.1, 0.1]))
 
 
 def test_the_room_has_its_lengths_and_everything_faces_inward() -> None:
@@ -145,7 +140,7 @@ def closed(scene: Scene) -> None:
 
 def test_a_split_wall_is_two_in_one_plane_and_what_it_holds_goes_with_its_part() -> None:
     for x, holder in ((-1.0, "wall_1"), (1.0, "wall_5")):
-        scene = split_wall(with_picture(empty_room(4.0, 3.0, 2.5), x), "wall_1", np.array([0.4, 0.0]))
+        scene = split_wall(with_picture(ROOM, x), "wall_1", np.array([0.4, 0.0]))
         closed(scene)
         lengths = sorted(round(f.length_m, 6) for f in wall_feet(scene) if f.id in ("wall_1", "wall_5"))
         assert lengths == [1.6, 2.4]
@@ -155,7 +150,7 @@ def test_a_split_wall_is_two_in_one_plane_and_what_it_holds_goes_with_its_part()
 
 @given(st.floats(-1.7, 1.7), st.floats(-1.5, 2.0).filter(lambda d: abs(d) > 0.05), st.sampled_from([1, 5]))
 def test_a_part_that_moves_leaves_a_step_with_a_wall(at: float, distance: float, number: int) -> None:
-    scene = split_wall(empty_room(4.0, 3.0, 2.5), "wall_1", np.array([at, 0.0]))
+    scene = split_wall(ROOM, "wall_1", np.array([at, 0.0]))
     before = shapely.Polygon(scene.plane("floor").polygon[:, :2]).area
     part = next(f for f in wall_feet(scene) if f.id == f"wall_{number}")
     moved = move_plane(scene, part.id, distance)
@@ -165,7 +160,7 @@ def test_a_part_that_moves_leaves_a_step_with_a_wall(at: float, distance: float,
 
 
 def test_steps_move_like_other_walls() -> None:
-    scene = move_plane(split_wall(empty_room(4.0, 3.0, 2.5), "wall_1", np.zeros(2)), "wall_1", 1.0)
+    scene = move_plane(split_wall(ROOM, "wall_1", np.zeros(2)), "wall_1", 1.0)
     closed(move_plane(scene, "wall_6", 0.3))
     closed(move_plane(scene, "wall_5", 0.4))
 
@@ -173,7 +168,7 @@ def test_steps_move_like_other_walls() -> None:
 @pytest.mark.parametrize(("wall", "x"), [("floor", 0.0), ("wall_9", 0.0), ("wall_1", 1.95), ("wall_1", -7.0)])
 def test_what_cannot_be_split_is_refused(wall: str, x: float) -> None:
     with pytest.raises(EditRefused, match=r"split"):
-        split_wall(empty_room(4.0, 3.0, 2.5), wall, np.array([x, 0.0]))
+        split_wall(ROOM, wall, np.array([x, 0.0]))
 
 
 @pytest.mark.parametrize("turn", [1, -1])
@@ -202,4 +197,4 @@ def test_a_drawn_room_has_its_corners_and_the_height_of_the_one_before(turn: int
 )
 def test_what_is_no_room_is_refused(outline: list[list[float]], words: str) -> None:
     with pytest.raises(EditRefused, match=words):
-        draw_room(empty_room(4.0, 3.0, 2.5), np.array(outline))
+        draw_room(ROOM, np.array(outline))

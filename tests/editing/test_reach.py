@@ -10,8 +10,9 @@ import pytest
 from diorama_core.editing.homes import join
 from diorama_core.editing.reach import uses_of
 from diorama_core.scene import edits
-from diorama_core.scene.types import Pose, Scene, SceneObject, Support
+from diorama_core.scene.types import Pose, Scene, Support
 from tests.app.small_room import furnished_scene
+from tests.editing.objects import item
 from tests.editing.test_homes import with_door
 
 
@@ -20,10 +21,6 @@ def bare(*doors: tuple[str, str]) -> Scene:
     for name, wall in doors:
         scene = with_door(scene, name, wall, 0.0)
     return scene
-
-
-def block(name: str, size: tuple[float, float, float], x: float, y: float) -> SceneObject:
-    return SceneObject(name, name, "cabinet", "shape", size, Pose.upright((x, y, size[2] / 2)))
 
 
 def test_an_empty_room_has_all_of_it() -> None:
@@ -39,15 +36,15 @@ def test_furniture_narrows_ways_and_takes_the_turning_circle() -> None:
     low, high = (f(scene.architecture.by_role("floor")[0].polygon[:, :2], axis=0) for f in (np.min, np.max))
     middle = (low + high) / 2
     for width, way in ((3.45, 0.9), (4.3, 0.0)):  # what is left beside it: 95 and 10 cm
-        wide = block("bar", (0.6, width, 1.0), 0.0, 0.0)
+        wide = item("bar", (0.6, width, 1.0), 0.0, 0.0)
         pose = Pose.upright((high[0] - width / 2, middle[1], 0.5), np.pi / 2)
         (use,) = uses_of(edits.insert(scene, replace(wide, pose=pose), Support("bar", "floor")))
         assert use.way_m == way
     full = scene
     for number, x in enumerate(np.arange(low[0] + 0.3, high[0], 0.7)):
         for y in np.arange(low[1] + 0.3, high[1], 0.7):
-            item = block(f"b{number}-{y:.1f}", (0.3, 0.3, 1.0), float(x), float(y))
-            full = edits.insert(full, item, Support(item.id, "floor"))
+            block = item(f"b{number}-{y:.1f}", (0.3, 0.3, 1.0), float(x), float(y))
+            full = edits.insert(full, block, Support(block.id, "floor"))
     assert uses_of(full)[0].turning_at is None
 
 

@@ -27,6 +27,13 @@ def _lamp(x: float, y: float, height: float) -> SceneObject:
     return SceneObject("new", "lamp", "lamp", "lamp_a", shape.size_m, pose)
 
 
+def _seen(lamp: SceneObject, high_px: float, scene: Scene) -> SceneObject:
+    """A lamp whose foot the photo shows on the table."""
+    assert scene.camera is not None
+    x, y = scene.camera.project(np.array([0.1, 2.2, 0.74]))
+    return replace(lamp, box_px=(x - 20.0, y - high_px, x + 20.0, y))
+
+
 def _room() -> Scene:
     """Without the lamp that is on the table."""
     scene = furnished_scene()
@@ -40,17 +47,14 @@ def _room() -> Scene:
 @pytest.mark.unchecked
 def test_what_would_go_through_a_table_stands_on_it_as_the_photo_shows_it() -> None:
     scene = _room()
-    camera = scene.camera
-    assert camera is not None
-    foot = camera.project(np.array([[0.1, 2.2, 0.74]]))[0]  # the photo shows it on the table
-    lamp = replace(_lamp(0.1, 2.55, 1.6), box_px=(foot[0] - 20.0, foot[1] - 90.0, foot[0] + 20.0, foot[1]))
+    lamp = _seen(_lamp(0.1, 2.55, 1.6), 90.0, scene)
     after = insert(scene, Posed(lamp, Support("new", "floor")), PlainLibrary())
     new = after.objects[-1]
     assert after.support_of(new.id).parent == "table_1"
     assert not Collisions(PlainLibrary()).pairs(after, [new.id])
     assert new.corners_world[:, 2].min() == pytest.approx(0.74, abs=1e-6)
     np.testing.assert_allclose(new.pose.position[:2], (0.1, 2.2), atol=0.02)
-    seen = [o.size_m[2] / camera.to_camera(o.pose.position[None])[0, 2] for o in (lamp, new)]
+    seen = [o.size_m[2] / scene.camera.to_camera(o.pose.position[None])[0, 2] for o in (lamp, new)]
     assert seen[1] == pytest.approx(seen[0], rel=0.1)
 
 
@@ -73,14 +77,9 @@ def test_what_meets_nothing_stays() -> None:
 @pytest.mark.unchecked
 def test_what_was_found_out_of_the_room_stands_on_what_the_photo_shows_it_on() -> None:
     scene = _room()
-    camera = scene.camera
-    assert camera is not None
-    foot = camera.project(np.array([[0.1, 2.2, 0.74]]))[0]
-    lamp = replace(_lamp(-0.7, 7.3, 1.1), box_px=(foot[0] - 20.0, foot[1] - 70.0, foot[0] + 20.0, foot[1]))
+    lamp = _seen(_lamp(-0.7, 7.3, 1.1), 70.0, scene)
     below = replace(lamp, pose=lamp.pose.move((0.0, 0.0, -0.9)))
     after = insert(scene, Posed(below, Support("new", "wall_4", "mounted on")), PlainLibrary())
     new = after.objects[-1]
-    edge = after.support_of(new.id)
-    assert edge is not None
-    assert edge.parent == "table_1"
+    assert after.support_of(new.id).parent == "table_1"
     assert new.corners_world[:, 2].min() == pytest.approx(0.74, abs=1e-6)

@@ -10,14 +10,14 @@ from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
 from tests.app.small_room import furnished_scene
 
+SCENE = furnished_scene()
 BY_NAME = {h.name: h for h in HANDLES}
 
 
 @given(st.sampled_from([h for h in HANDLES if h.axis is not None]), st.floats(-0.3, 1.0))
 def test_the_opposite_face_stays(handle: Handle, by_m: float) -> None:
-    scene = furnished_scene()
-    before = scene.object("chair_1")
-    after = stretch(scene, "chair_1", handle, by_m, snap=False).object("chair_1")
+    before = SCENE.object("chair_1")
+    after = stretch(SCENE, "chair_1", handle, by_m, snap=False).object("chair_1")
     opposite = -np.asarray(handle.along)
     faces = [o.pose.apply(opposite * np.asarray(o.shape_size_m) / 2) for o in (before, after)]
     np.testing.assert_allclose(*faces, atol=1e-9)
@@ -28,18 +28,16 @@ def test_the_opposite_face_stays(handle: Handle, by_m: float) -> None:
 
 
 def test_what_stands_on_it_rises_with_the_top_and_stays_otherwise() -> None:
-    scene = furnished_scene()
-    lamp = scene.object("lamp_1").pose.position
-    higher = stretch(scene, "table_1", BY_NAME["top"], 0.2, snap=False).object("lamp_1").pose.position
+    lamp = SCENE.object("lamp_1").pose.position
+    higher = stretch(SCENE, "table_1", BY_NAME["top"], 0.2, snap=False).object("lamp_1").pose.position
     np.testing.assert_allclose(higher - lamp, (0.0, 0.0, 0.2), atol=1e-9)
-    wider = stretch(scene, "table_1", BY_NAME["left"], 0.4, snap=False).object("lamp_1").pose.position
+    wider = stretch(SCENE, "table_1", BY_NAME["left"], 0.4, snap=False).object("lamp_1").pose.position
     np.testing.assert_allclose(wider, lamp, atol=1e-9)
 
 
 def test_the_corner_keeps_proportions_and_the_base() -> None:
-    scene = furnished_scene()
-    before = scene.object("table_1")
-    after = stretch(scene, "table_1", BY_NAME["corner"], 0.3, snap=False).object("table_1")
+    before = SCENE.object("table_1")
+    after = stretch(SCENE, "table_1", BY_NAME["corner"], 0.3, snap=False).object("table_1")
     ratio = after.size_m / before.size_m
     np.testing.assert_allclose(ratio, ratio[0])
     assert ratio[0] > 1.1
@@ -48,15 +46,14 @@ def test_the_corner_keeps_proportions_and_the_base() -> None:
 
 
 def test_snapping_keeps_to_five_centimetres_and_nothing_vanishes() -> None:
-    scene = furnished_scene()
-    snapped = stretch(scene, "chair_1", BY_NAME["front"], 0.083, snap=True).object("chair_1")
+    snapped = stretch(SCENE, "chair_1", BY_NAME["front"], 0.083, snap=True).object("chair_1")
     assert snapped.size_m[0] == pytest.approx(0.6)
-    flat = stretch(scene, "chair_1", BY_NAME["top"], -5.0, snap=False).object("chair_1")
+    flat = stretch(SCENE, "chair_1", BY_NAME["top"], -5.0, snap=False).object("chair_1")
     assert flat.size_m[2] == pytest.approx(0.01)
 
 
 def test_the_hand_on_a_ray_says_how_far() -> None:
-    item = furnished_scene().object("table_1")
+    item = SCENE.object("table_1")
     for handle in HANDLES:
         grabbed = item.pose.position + item.pose.R_world_object @ handle_place(item, handle, 0.04)
         outward = item.pose.R_world_object @ (np.asarray(handle.along) * item.size_m)
@@ -67,6 +64,6 @@ def test_the_hand_on_a_ray_says_how_far() -> None:
 
 
 def test_locked_objects_keep_their_size() -> None:
-    scene = edits.set_locked(furnished_scene(), "chair_1", True)
+    scene = edits.set_locked(SCENE, "chair_1", True)
     with pytest.raises(EditRefused, match="locked"):
         stretch(scene, "chair_1", BY_NAME["top"], 0.1, snap=False)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from diorama_core.geometry.projection import edges_of_cuboid
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster, clip_bounds, is_circle
 from diorama_core.geometry.window import Window, soft_iou
-from diorama_core.render.raycast import render_buffers
+from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Camera, Intrinsics, Pose, box_corners
 
 CAMERA = Camera(Intrinsics.from_fov(64, 48, 1.0), np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 1.2], [0, 0, 0, 1]]))
@@ -33,7 +33,7 @@ def test_rays_in_the_shape_s_frame_see_what_a_renderer_sees(yaw, x, y, sx, sz) -
     caster = ShapeCaster(MESH)
     hits = caster.cast(CAMERA.position, directions, batch(pose))
     assert (caster.covers(CAMERA.position, directions, batch(pose)) == hits.is_hit).all()
-    truth = render_buffers([(MESH, pose.matrix)], CAMERA)
+    truth = MeshCaster([(MESH, pose.matrix)]).buffers(CAMERA)
     both = hits.is_hit[0] & truth.silhouette.ravel()
     assert (hits.is_hit[0] != truth.silhouette.ravel()).mean() < 0.003
     assert np.abs(hits.depth_m[0] - truth.depth_m.ravel())[both].max() < 1e-2

@@ -8,6 +8,7 @@ import numpy as np
 
 from diorama_core.artefacts import DetectedObject
 from diorama_core.geometry.projection import cuboid_corners, visible_bounds
+from diorama_core.geometry.rotations import rotation_vector
 from diorama_core.library.taxonomy import category
 from diorama_core.multiview.joining import RoomPhoto, Sighted
 from diorama_core.multiview.joint_fit import PosedBoxes
@@ -17,6 +18,11 @@ from diorama_core.scene.types import Camera, Intrinsics
 from diorama_core.synthesis.cameras import level_pose
 
 K = Intrinsics(640, 480, 520.0, 520.0, 320.0, 240.0)
+
+
+def turn_off_deg(a: Camera, b: Camera) -> float:
+    """Angle between the directions of two cameras."""
+    return float(np.degrees(np.linalg.norm(rotation_vector(a.T_world_camera[:3, :3].T @ b.T_world_camera[:3, :3]))))
 
 
 @dataclass(frozen=True)

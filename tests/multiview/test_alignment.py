@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from diorama_core.artefacts import CameraEstimate, CameraHypothesis
 from diorama_core.multiview.alignment import PhotoReading, align
 from diorama_core.provenance import CameraSource
-from diorama_core.scene.types import Camera
+from diorama_core.scene.types import Camera, rigid
 from tests.multiview.rooms import CAMERAS, K, photo
 
 
@@ -15,8 +15,7 @@ def _readings(G: np.ndarray, scale: float, t: np.ndarray) -> list[PhotoReading]:
     """The made photos in another world, with what the camera stage would read of each."""
     found = []
     for camera in CAMERAS:
-        T = np.eye(4)
-        T[:3, :3], T[:3, 3] = G @ camera.T_world_camera[:3, :3], scale * G @ camera.position + t
+        T = rigid(G @ camera.T_world_camera[:3, :3], scale * G @ camera.position + t)
         reading = CameraHypothesis(K, camera.T_world_camera[:3, :3], 1.0)
         estimate = CameraEstimate((reading,), 1.0, CameraSource.exact())
         found.append(PhotoReading(Camera(K, T), estimate, photo(camera)[0].boxes.observations))

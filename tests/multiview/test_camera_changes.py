@@ -10,7 +10,7 @@ from PIL import Image
 
 from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
 from diorama_core.multiview.camera_changes import following, quarters_of, upright_camera
-from diorama_core.scene.types import Camera, Intrinsics
+from diorama_core.scene.types import Camera, Intrinsics, rigid
 from tests.multiview.rooms import CAMERAS
 
 PHOTO = Photo(np.zeros((4, 6, 3), np.uint8), "p.png", (6, 4))
@@ -22,9 +22,7 @@ FURTHER = (
 
 
 def scaled(camera: Camera, factor: float) -> Camera:
-    T = camera.T_world_camera.copy()
-    T[:3, 3] *= factor
-    return Camera(camera.intrinsics, T)
+    return Camera(camera.intrinsics, rigid(camera.T_world_camera[:3, :3], factor * camera.position))
 
 
 def test_the_same_camera_changes_nothing() -> None:
@@ -47,12 +45,6 @@ def test_a_scene_built_anew_lets_them_go() -> None:
         assert now[0].inputs is FURTHER[0].inputs
 
 
-def pixel(camera: Camera, point: np.ndarray) -> np.ndarray:
-    local = np.linalg.inv(camera.T_world_camera) @ np.append(point, 1.0)
-    k = camera.intrinsics
-    return np.array([k.fx * local[0] / local[2] + k.cx, k.fy * local[1] / local[2] + k.cy])
-
-
 @pytest.mark.parametrize(("tag", "quarters"), [(1, 0), (6, 1), (3, 2), (8, 3)])
 def test_a_point_is_seen_where_the_turned_picture_shows_it(tmp_path: Path, tag: int, quarters: int) -> None:
     exif = Image.Exif()
@@ -61,7 +53,7 @@ def test_a_point_is_seen_where_the_turned_picture_shows_it(tmp_path: Path, tag: 
     assert quarters_of(tmp_path / "a.jpg") == quarters
     stored = Camera(Intrinsics(40, 30, 50.0, 48.0, 21.0, 14.0), np.eye(4))
     upright = upright_camera(stored, quarters)
-    u, v = pixel(stored, np.array([0.1, 0.2, 1.5]))
+    u, v = stored.project(np.array([0.1, 0.2, 1.5]))
     turned = {0: (u, v), 1: (30 - v, u), 2: (40 - u, 30 - v), 3: (v, 40 - u)}[quarters]
-    assert pixel(upright, np.array([0.1, 0.2, 1.5])) == pytest.approx(turned)
+    assert upright.project(np.array([0.1, 0.2, 1.5])) == pytest.approx(turned)
     assert (upright.intrinsics.width > upright.intrinsics.height) == (quarters % 2 == 0)

@@ -13,7 +13,7 @@ from diorama_core.multiview.camera_in_room import MeasuredThing, camera_in_room
 from diorama_core.multiview.rooms import photo_world
 from diorama_core.provenance import CameraSource
 from diorama_core.scene.types import Camera
-from tests.multiview.rooms import CAMERAS, THINGS, Thing, photo
+from tests.multiview.rooms import CAMERAS, THINGS, Thing, photo, turn_off_deg
 
 FLOOR = box(-3.0, -3.2, 3.0, 2.4)
 FURTHER = (
@@ -45,8 +45,7 @@ def test_the_camera_is_where_boxes_look_as_in_the_photo(number: int, focal: floa
     found = camera_in_room(measured(), FLOOR, read_alone(camera, focal), seen.boxes.observations)
     assert found is not None
     assert np.linalg.norm(found.camera.position - camera.position) < 0.2
-    turn = found.camera.T_world_camera[:3, :3].T @ camera.T_world_camera[:3, :3]
-    assert np.degrees(np.arccos((np.trace(turn) - 1) / 2)) < 3.0
+    assert turn_off_deg(found.camera, camera) < 3.0
     assert {(whose[b], t) for t, b in found.met} == {(whose[b], whose[b]) for _, b in found.met}
     assert len(found.met) == len(whose)
 

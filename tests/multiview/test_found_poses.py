@@ -11,12 +11,11 @@ from diorama_core.multiview.found_poses import UnposedPhoto, _describe_excluded,
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.scene.types import Camera
 from diorama_core.synthesis import furnish_room
-from diorama_core.synthesis.cameras import level_pose, sample_cameras
+from diorama_core.synthesis.cameras import sample_cameras
 from diorama_core.synthesis.truth import Studio
+from tests.multiview.two_photos import SIZE, camera_beside
 
 pytest.importorskip("pycolmap", reason="needs pycolmap (pip install 'diorama[photos]')")
-
-SIZE = (640, 480)
 
 
 def photos_and_cameras() -> tuple[list[UnposedPhoto], list[Camera]]:
@@ -24,15 +23,8 @@ def photos_and_cameras() -> tuple[list[UnposedPhoto], list[Camera]]:
     library = built_in_library()
     scene = furnish_room(7006, "dining", library, clutter=8)
     first = sample_cameras(scene, library, 7006, 1, SIZE)[0]
-    studio, eye, ahead = Studio(scene, library), first.position, first.T_world_camera[:3, 2]
-    target, yaw = eye + 2.5 * ahead, float(np.arctan2(ahead[1], ahead[0]))
-    photos, cameras = [], []
-    for number, aside in enumerate((0.0, -0.35, 0.35)):
-        place = eye + aside * np.array([np.sin(yaw), -np.cos(yaw), 0.0])
-        turned = float(np.arctan2(target[1] - place[1], target[0] - place[0]))
-        camera = Camera(first.intrinsics, level_pose(place, turned, -float(np.arcsin(ahead[2]))))
-        photos.append(UnposedPhoto(f"{number}.jpg", studio.photograph(camera, SIZE)[0], None))
-        cameras.append(camera)
+    studio, cameras = Studio(scene, library), [camera_beside(first, aside_m) for aside_m in (0.0, -0.35, 0.35)]
+    photos = [UnposedPhoto(f"{k}.jpg", studio.photograph(c, SIZE)[0], None) for k, c in enumerate(cameras)]
     blank = np.full((480, 640, 3), 200, np.uint8)
     return [*photos, UnposedPhoto("blank.jpg", blank, None)], cameras
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from diorama_core.geometry.openings import STANDS_OUT_M
 from diorama_core.multiview.one_scene import acyclic, fuse_proportions, move_to_room, set_into_wall
-from diorama_core.scene.types import Pose, Support, yaw_rotation
+from diorama_core.scene.types import Pose, Support, rigid, yaw_rotation
 from tests.app.small_room import furnished_scene
 
 EXTENT = st.floats(0.1, 3.0)
@@ -37,8 +37,7 @@ def test_extents_that_boxes_hardly_tell_follow_the_shape() -> None:
 
 def test_a_scene_moves_as_a_whole_and_back() -> None:
     scene = furnished_scene()
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = yaw_rotation(0.7), (1.0, -2.0, 0.3)
+    T = rigid(yaw_rotation(0.7), np.array([1.0, -2.0, 0.3]))
     there = move_to_room(scene, T)
     back = move_to_room(there, np.linalg.inv(T))
     for before, moved, after in zip(scene.objects, there.objects, back.objects, strict=True):

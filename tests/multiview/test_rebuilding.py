@@ -11,18 +11,16 @@ from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.multiview import adding
 from diorama_core.multiview.rebuilding import transfer_camera, with_photos_again
 from diorama_core.pipeline.stages import Stages, embedded_stages
-from diorama_core.scene.types import Camera, yaw_rotation
+from diorama_core.scene.types import Camera, rigid, yaw_rotation
 from tests.few_shapes import few_shapes
 from tests.multiview.rooms import camera
 from tests.multiview.two_photos import SMALL, AsItIs, two_photos, with_camera
 
 
 def moved(one: Camera, turn_rad: float, scale: float) -> Camera:
-    T = np.eye(4)
     R = yaw_rotation(turn_rad)
-    T[:3, :3] = R @ one.T_world_camera[:3, :3]
-    T[:3, 3] = scale * (R @ one.position) + np.array([0.4, -0.2, 0.0])
-    return Camera(one.intrinsics, T)
+    t = scale * (R @ one.position) + np.array([0.4, -0.2, 0.0])
+    return Camera(one.intrinsics, rigid(R @ one.T_world_camera[:3, :3], t))
 
 
 def test_a_camera_follows_turn_place_and_scale() -> None:

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -18,20 +20,8 @@ from diorama_core.multiview.registration import (
     sampson_px,
     solve_camera,
 )
-from diorama_core.scene.types import Camera
-from tests.multiview.rooms import CAMERAS, K
+from tests.multiview.rooms import CAMERAS, K, turn_off_deg
 from tests.multiview.two_photos import two_photos
-
-
-def pixels(camera: Camera, points: np.ndarray) -> np.ndarray:
-    seen = camera.to_camera(points)
-    k = camera.intrinsics
-    return seen[:, :2] / seen[:, 2:] * [k.fx, k.fy] + [k.cx, k.cy]
-
-
-def turn_off_deg(a: Camera, b: Camera) -> float:
-    trace = np.trace(a.T_world_camera[:3, :3].T @ b.T_world_camera[:3, :3])
-    return float(np.degrees(np.arccos(np.clip((trace - 1) / 2, -1, 1))))
 
 
 def common(surface_off: float, wrong: int = 0) -> CommonPoints:
@@ -44,10 +34,10 @@ def common(surface_off: float, wrong: int = 0) -> CommonPoints:
     ]
     points = np.vstack(walls)
     a, b = CAMERAS[0], CAMERAS[1]
-    seen_b = pixels(b, points)
+    seen_b = b.project(points)
     seen_b[:wrong] = rng.uniform(0, 400, (wrong, 2))
     far = a.position + (1 + surface_off) * (points - a.position)
-    return CommonPoints(a, pixels(a, points), seen_b, far)
+    return CommonPoints(a, a.project(points), seen_b, far)
 
 
 def test_a_camera_is_found_by_points_on_surfaces() -> None:
@@ -67,8 +57,6 @@ def test_surfaces_that_are_too_far_only_stretch_the_way_between_the_photos() -> 
 
 
 def test_an_unknown_focal_length_is_found_too() -> None:
-    from dataclasses import replace
-
     found = solve_camera([common(0.0)], replace(K, fx=1.2 * K.fx, fy=1.2 * K.fy), GUESSED_LOG_SIGMA)
     assert found is not None
     assert found.intrinsics.fx == pytest.approx(K.fx, rel=0.05)
@@ -92,7 +80,7 @@ def test_pixels_of_one_place_have_no_epipolar_distance() -> None:
 def test_a_photo_of_something_else_is_one_line() -> None:
     pytest.importorskip("pycolmap", reason="needs pycolmap (pip install 'diorama[photos]')")
     grey = [np.full((120, 160, 3), 90 + n, np.uint8) for n in range(2)]
-    known = PlacedPhoto(UnposedPhoto("first", grey[0], 150.0), Camera(K.resize(160, 120), CAMERAS[0].T_world_camera))
+    known = PlacedPhoto(UnposedPhoto("first", grey[0], 150.0), CAMERAS[0].resize(160, 120))
     with pytest.raises(InputError, match=r"new does not join: .* take it from a step or two beside"):
         register_camera(UnposedPhoto("new", grey[1], None), [known], lambda camera, px: np.ones(len(px)))
 
@@ -103,8 +91,7 @@ def test_the_camera_of_a_second_photo_is_found_with_one_known_photo() -> None:
     photos = two_photos()
     known = photos_of_scene(photos.scene, photos.first, ())
     found = camera_of(FurtherPhoto("beside", photos.second), known, photos.scene, built_in_library())
-    trace = np.trace(found.T_world_camera[:3, :3].T @ photos.camera.T_world_camera[:3, :3])
-    assert np.degrees(np.arccos(np.clip((trace - 1) / 2, -1, 1))) < 0.5
+    assert turn_off_deg(found, photos.camera) < 0.5
     assert np.linalg.norm(found.position - photos.camera.position) < 0.05
     assert found.intrinsics.fx == pytest.approx(photos.camera.intrinsics.fx, rel=0.02)
 

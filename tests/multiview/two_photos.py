@@ -50,11 +50,7 @@ def _made(size: tuple[int, int]) -> TwoPhotos:
     library = built_in_library()
     room = furnish_room(7006, "dining", library, clutter=1)
     camera = sample_cameras(room, library, 7006, 1, size)[0]
-    studio, eye, ahead = Studio(room, library), camera.position, camera.T_world_camera[:3, 2]
-    yaw, target = float(np.arctan2(ahead[1], ahead[0])), eye + 2.5 * ahead
-    place = eye + ASIDE_M * np.array([np.sin(yaw), -np.cos(yaw), 0.0])
-    turned = float(np.arctan2(target[1] - place[1], target[0] - place[0]))
-    beside = Camera(camera.intrinsics, level_pose(place, turned, -float(np.arcsin(ahead[2]))))
+    studio, beside = Studio(room, library), camera_beside(camera, ASIDE_M)
     views = [studio.view(c, size, with_empty_room=False) for c in (camera, beside)]
     there = views[0].camera.T_world_camera @ np.linalg.inv(camera.T_world_camera) @ beside.T_world_camera
     seen = set(views[0].indices) & set(views[1].indices)
@@ -68,6 +64,15 @@ def _made(size: tuple[int, int]) -> TwoPhotos:
         Camera(beside.intrinsics, there),
         tuple(o.category for o in gone),
     )
+
+
+def camera_beside(camera: Camera, aside_m: float) -> Camera:
+    """A camera to the right of another one, at the same height, that looks at what is in its middle."""
+    eye, ahead = camera.position, camera.T_world_camera[:3, 2]
+    yaw, target = float(np.arctan2(ahead[1], ahead[0])), eye + 2.5 * ahead
+    place = eye + aside_m * np.array([np.sin(yaw), -np.cos(yaw), 0.0])
+    turned = float(np.arctan2(target[1] - place[1], target[0] - place[0]))
+    return Camera(camera.intrinsics, level_pose(place, turned, -float(np.arcsin(ahead[2]))))
 
 
 def project_of(photos: TwoPhotos, folder: Path) -> Project:

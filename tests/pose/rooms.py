@@ -22,7 +22,7 @@ from diorama_core.artefacts import (
 from diorama_core.errors import LibraryError
 from diorama_core.library.record import Shape
 from diorama_core.provenance import DepthSource, ScaleSource
-from diorama_core.render.raycast import render_buffers
+from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Camera, Intrinsics, Pose, Support, yaw_rotation
 from tests.primitives import material
 
@@ -176,7 +176,7 @@ class Room:
 
     @cached_property
     def buffers(self):
-        return render_buffers([(LIBRARY.mesh(p.shape_id), p.pose.matrix) for p in self.placed], self.camera)
+        return MeshCaster([(LIBRARY.mesh(p.shape_id), p.pose.matrix) for p in self.placed]).buffers(self.camera)
 
     @cached_property
     def seen(self) -> tuple[int, ...]:

@@ -25,7 +25,7 @@ from diorama_core.pose.made_to_measure import FittedChoice
 from diorama_core.pose.seen_objects import SeenObject
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, ScaleSource
-from diorama_core.render.raycast import render_buffers
+from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Candidate, Pose
 from tests.pose.rooms import LIBRARY as BLOCKS
 from tests.pose.rooms import camera_at
@@ -51,7 +51,7 @@ def ranked(
     """The candidates for one object that looks like `true_id`, for which these were retrieved, the best first."""
     size = np.array(library.shape(true_id).size_m)
     pose = Pose.upright((0.0, 3.4, size[2] / 2), np.deg2rad(-65.0))
-    seen = render_buffers([(library.mesh(true_id), pose.matrix)], CAMERA)
+    seen = MeshCaster([(library.mesh(true_id), pose.matrix)]).buffers(CAMERA)
     mask = seen.instance == 0
     rows, columns = np.nonzero(mask)
     box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))

@@ -15,7 +15,7 @@ from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.outline_fit import COARSE, FINE, fit_pose
 from diorama_core.pose.surface import measure_surface
 from diorama_core.provenance import DepthSource
-from diorama_core.render.raycast import render_buffers
+from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Pose, yaw_rotation
 from tests.pose.rooms import LIBRARY, camera_at
 
@@ -26,7 +26,7 @@ CASTER = ShapeCaster(LIBRARY.mesh("table"))
 
 
 def evidence(measured: bool, trust: float = 1.0, cells: int = 56) -> Evidence:
-    seen = render_buffers([(LIBRARY.mesh("table"), TRUE.matrix)], CAMERA)
+    seen = MeshCaster([(LIBRARY.mesh("table"), TRUE.matrix)]).buffers(CAMERA)
     mask = seen.instance == 0
     rows, columns = np.nonzero(mask)
     box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
@@ -86,7 +86,7 @@ def test_what_is_cut_or_hidden_keeps_its_size(cut: dict[str, float]) -> None:
 def test_what_is_round_from_above_stays_round() -> None:
     size, drum = np.array([0.8, 0.8, 0.7]), trimesh.creation.cylinder(0.4, 0.7, sections=48)
     true = Pose.upright((0.2, 3.2, 0.35), 0.0)
-    seen = render_buffers([(drum, true.matrix)], CAMERA)
+    seen = MeshCaster([(drum, true.matrix)]).buffers(CAMERA)
     mask = seen.instance == 0
     rows, columns = np.nonzero(mask)
     box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))

@@ -11,7 +11,7 @@ from diorama_core.geometry.observed import observe
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.turned_profile import fit_profile, is_revolution, profile_m
-from diorama_core.render.raycast import render_buffers
+from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.types import Pose
 from tests.pose.rooms import camera_at
 
@@ -25,7 +25,7 @@ def seen(true_id: str, hidden_left: bool = False) -> tuple[Evidence, Pose]:
     """A large vase in the picture, its left half behind something if asked."""
     size = LARGE * np.array(LIBRARY.shape(true_id).size_m)
     pose = Pose(np.eye(3), np.array([0.0, 3.4, size[2] / 2]), np.full(3, LARGE))
-    mask = render_buffers([(LIBRARY.mesh(true_id), pose.matrix)], CAMERA).instance == 0
+    mask = MeshCaster([(LIBRARY.mesh(true_id), pose.matrix)]).buffers(CAMERA).instance == 0
     rows, columns = np.nonzero(mask)
     box = (float(columns.min()), float(rows.min()), float(columns.max() + 1), float(rows.max() + 1))
     before = np.zeros_like(mask)

@@ -12,21 +12,35 @@ from diorama_core.progress import CancelToken, Progress, ProgressEvent
 from diorama_core.render.lighting import Effort
 from diorama_core.render.picture import BACKGROUND_SRGB, instances_seen, picture, scene_view
 from diorama_core.render.raycast import PinholeView
-from diorama_core.scene.types import Architecture, Plane, Scene, SurfaceFinish
+from diorama_core.scene.types import Architecture, Camera, Plane, Scene, SurfaceFinish
 from tests.primitives import PrimitiveLibrary, box_room, eye_camera, furnished_room, place
 
 LIBRARY = PrimitiveLibrary()
+SCENE = furnished_room(LIBRARY)
 QUICK = Effort(1, 1)
 SMALL = (160, 120)
 BACKGROUND = np.rint(np.array(BACKGROUND_SRGB) * 255)
 
 
-def pixel_of(scene: Scene, object_id: str, size: tuple[int, int] = SMALL) -> tuple[int, int]:
-    """Row and column where the object's centre is in the photo view."""
-    view = scene_view(scene, "photo", size)
-    assert isinstance(view, PinholeView)
-    column, row = view.camera.project(scene.object(object_id).pose.position)
+def quick(scene: Scene, **how) -> np.ndarray:
+    return picture(scene, LIBRARY, **{"size": SMALL, "effort": QUICK, **how})
+
+
+def camera_of(scene: Scene, view: str = "photo", size: tuple[int, int] = SMALL) -> Camera:
+    shown = scene_view(scene, view, size)
+    assert isinstance(shown, PinholeView)
+    return shown.camera
+
+
+def pixel(camera: Camera, point: object) -> tuple[int, int]:
+    """Row and column."""
+    column, row = camera.project(np.asarray(point))
     return int(row), int(column)
+
+
+def pixel_of(scene: Scene, object_id: str) -> tuple[int, int]:
+    """Row and column where the object's centre is in the photo view."""
+    return pixel(camera_of(scene), scene.object(object_id).pose.position)
 
 
 def redness(colour: np.ndarray) -> float:
@@ -34,68 +48,58 @@ def redness(colour: np.ndarray) -> float:
 
 
 def test_photo_view_puts_objects_where_the_camera_sees_them() -> None:
-    scene = furnished_room(LIBRARY)
-    image = picture(scene, LIBRARY, size=SMALL, effort=QUICK)
+    image = quick(SCENE)
     assert image.shape == (120, 160, 3)
     assert image.dtype == np.uint8
-    assert redness(image[pixel_of(scene, "b")]) > 80, "the red ball"
-    without = picture(replace(scene, objects=scene.objects[:3]), LIBRARY, size=SMALL, effort=QUICK)
-    assert redness(without[pixel_of(scene, "b")]) < 80
+    assert redness(image[pixel_of(SCENE, "b")]) > 80, "the red ball"
+    without = quick(replace(SCENE, objects=SCENE.objects[:3]))
+    assert redness(without[pixel_of(SCENE, "b")]) < 80
 
 
 def test_what_a_pixel_shows_is_told_without_light() -> None:
-    scene = furnished_room(LIBRARY)
-    shown = instances_seen(scene, LIBRARY, size=SMALL)
+    shown = instances_seen(SCENE, LIBRARY, size=SMALL)
     assert shown.shape == (120, 160)
-    assert set(range(len(scene.objects))) <= set(np.unique(shown).tolist())
-    ball = next(k for k, item in enumerate(scene.objects) if item.id == "b")
-    assert shown[pixel_of(scene, "b")] == ball
-    planes = np.unique(shown[shown >= len(scene.objects)]) - len(scene.objects)
+    assert set(range(len(SCENE.objects))) <= set(np.unique(shown).tolist())
+    ball = next(k for k, item in enumerate(SCENE.objects) if item.id == "b")
+    assert shown[pixel_of(SCENE, "b")] == ball
+    planes = np.unique(shown[shown >= len(SCENE.objects)]) - len(SCENE.objects)
     assert len(planes)
-    assert all(0 <= p < len(scene.architecture.planes) for p in planes)
+    assert all(0 <= p < len(SCENE.architecture.planes) for p in planes)
 
 
 def test_any_point_may_be_looked_from_and_at() -> None:
-    scene = furnished_room(LIBRARY)
-    x, y, z = scene.object("b").pose.position
-    shown = instances_seen(scene, LIBRARY, view=f"look:{x},{y - 1.0},{z + 0.3}:{x},{y},{z}", size=SMALL)
-    assert scene.objects[shown[60, 80]].id == "b"
-    above = instances_seen(scene, LIBRARY, view=f"look:{x},{y},{z + 1.0}:{x},{y},{z}", size=SMALL)
-    assert scene.objects[above[60, 80]].id == "b"
+    x, y, z = SCENE.object("b").pose.position
+    shown = instances_seen(SCENE, LIBRARY, view=f"look:{x},{y - 1.0},{z + 0.3}:{x},{y},{z}", size=SMALL)
+    assert SCENE.objects[shown[60, 80]].id == "b"
+    above = instances_seen(SCENE, LIBRARY, view=f"look:{x},{y},{z + 1.0}:{x},{y},{z}", size=SMALL)
+    assert SCENE.objects[above[60, 80]].id == "b"
 
 
 @pytest.mark.parametrize("view", ["look:", "look:0,0,1", "look:0,0,1:0,0,1", "look:0,0,nan:1,1,1", "look:a,b,c:0,0,0"])
 def test_a_look_from_nowhere_is_refused(view: str) -> None:
     with pytest.raises(InputError, match="two points in metres"):
-        scene_view(furnished_room(LIBRARY), view, SMALL)
+        scene_view(SCENE, view, SMALL)
 
 
 def test_hidden_objects_are_not_drawn() -> None:
-    scene = furnished_room(LIBRARY)
-    hidden = replace(scene, objects=tuple(replace(o, hidden=o.id == "b") for o in scene.objects))
-    assert redness(picture(hidden, LIBRARY, size=SMALL, effort=QUICK)[pixel_of(scene, "b")]) < 80
+    hidden = replace(SCENE, objects=tuple(replace(o, hidden=o.id == "b") for o in SCENE.objects))
+    assert redness(quick(hidden)[pixel_of(SCENE, "b")]) < 80
 
 
 def test_colour_override_shows() -> None:
-    scene = furnished_room(LIBRARY)
-    green = replace(
-        scene, objects=tuple(replace(o, colour=(0.1, 0.8, 0.1)) if o.id == "b" else o for o in scene.objects)
-    )
-    colour = picture(green, LIBRARY, size=SMALL, effort=QUICK)[pixel_of(scene, "b")].astype(int)
+    paint = (0.1, 0.8, 0.1)
+    green = replace(SCENE, objects=tuple(replace(o, colour=paint) if o.id == "b" else o for o in SCENE.objects))
+    colour = quick(green)[pixel_of(SCENE, "b")].astype(int)
     assert colour[1] > colour[0] + 60
 
 
 def test_the_print_is_upright_and_not_mirrored() -> None:
     """Seen from inside the room: blue bar above, red left of green."""
-    scene = furnished_room(LIBRARY)
-    view = scene_view(scene, "photo", (480, 360))
-    assert isinstance(view, PinholeView)
-    image = picture(scene, LIBRARY, size=(480, 360), effort=QUICK).astype(int)
-    pose = scene.object("p").pose
+    camera, pose = camera_of(SCENE, size=(480, 360)), SCENE.object("p").pose
+    image = quick(SCENE, size=(480, 360)).astype(int)
 
     def seen(across: float, up: float) -> np.ndarray:
-        column, row = view.camera.project(pose.apply(np.array([0.01, across, up])))
-        return image[int(row), int(column)]
+        return image[pixel(camera, pose.apply(np.array([0.01, across, up])))]
 
     assert seen(-0.2, 0.0).argmax() == 0, "its own right, which the viewer sees on the left, is red"
     assert seen(0.2, 0.0).argmax() == 1
@@ -110,13 +114,10 @@ def test_plane_textures_are_laid_the_right_way() -> None:
     room = box_room()
     planes = tuple(replace(p, texture="w.png") if p.id == "back" else p for p in room.planes)
     scene = Scene(eye_camera(), Architecture(planes))
-    view = scene_view(scene, "photo", SMALL)
-    assert isinstance(view, PinholeView)
-    image = picture(scene, LIBRARY, size=SMALL, textures={"w.png": quarters}, effort=QUICK).astype(int)
+    image = quick(scene, textures={"w.png": quarters}).astype(int)
 
     def seen(x: float, z: float) -> np.ndarray:
-        column, row = view.camera.project(np.array([x, 5.0, z]))
-        return image[int(row), int(column)]
+        return image[pixel(camera_of(scene), (x, 5.0, z))]
 
     assert seen(-1, 1.9).argmax() == 0
     assert seen(1, 1.9).argmax() == 1
@@ -125,10 +126,9 @@ def test_plane_textures_are_laid_the_right_way() -> None:
 
 
 def test_top_view_is_open_and_to_scale() -> None:
-    scene = furnished_room(LIBRARY)
-    view = scene_view(scene, "top", (200, 200))
-    image = picture(scene, LIBRARY, view="top", size=(200, 200), effort=QUICK)
-    plain = picture(replace(scene, objects=()), LIBRARY, view="top", size=(200, 200), effort=QUICK)
+    view = scene_view(SCENE, "top", (200, 200))
+    image = picture(SCENE, LIBRARY, view="top", size=(200, 200), effort=QUICK)
+    plain = picture(replace(SCENE, objects=()), LIBRARY, view="top", size=(200, 200), effort=QUICK)
     changed = np.abs(image.astype(int) - plain.astype(int)).max(axis=-1) > 40
     assert changed.sum() > 100, "furniture is seen through the missing ceiling"
     middle_column = 100 + 0.2 / view.metres_per_pixel  # the table's x; north is up
@@ -137,37 +137,25 @@ def test_top_view_is_open_and_to_scale() -> None:
 
 @pytest.mark.parametrize("view", ["front", "orbit:0", "orbit:45", "orbit:-120.5"])
 def test_rooms_stay_open_toward_the_viewer(view: str) -> None:
-    image = picture(furnished_room(LIBRARY), LIBRARY, view=view, size=SMALL, effort=QUICK)
+    image = picture(SCENE, LIBRARY, view=view, size=SMALL, effort=QUICK)
     red = [redness(c) for c in image.reshape(-1, 3)]
     assert max(red) > 80, "the ball on the table is seen past the walls"
     assert (image[0, 0] == BACKGROUND).all()
 
 
 def test_objects_on_a_wall_seen_from_behind_go_with_it() -> None:
-    scene = furnished_room(LIBRARY)
-    image = picture(scene, LIBRARY, view="orbit:180", size=SMALL, effort=QUICK)
-    bare = picture(
-        replace(scene, objects=scene.objects[:4], supports=scene.supports[:4]),
-        LIBRARY,
-        view="orbit:180",
-        size=SMALL,
-        effort=QUICK,
-    )
-    corners = scene.object("p").corners_world
-    view = scene_view(scene, "orbit:180", SMALL)
-    assert isinstance(view, PinholeView)
-    column, row = view.camera.project(corners.mean(axis=0))
-    assert np.abs(image[int(row), int(column)].astype(int) - bare[int(row), int(column)]).max() < 12
+    without = replace(SCENE, objects=SCENE.objects[:4], supports=SCENE.supports[:4])
+    image, bare = (quick(one, view="orbit:180").astype(int) for one in (SCENE, without))
+    at = pixel(camera_of(SCENE, "orbit:180"), SCENE.object("p").corners_world.mean(axis=0))
+    assert np.abs(image[at] - bare[at]).max() < 12
 
 
 def test_everything_fits_an_orbit_picture() -> None:
-    scene = furnished_room(LIBRARY)
-    corners = np.concatenate([p.polygon for p in scene.architecture.planes])
+    corners = np.concatenate([p.polygon for p in SCENE.architecture.planes])
     for angle in (0, 33, 90, 200):
-        view = scene_view(scene, f"orbit:{angle}", (300, 200))
-        assert isinstance(view, PinholeView)
-        pixels = view.camera.project(corners)
-        assert (view.camera.to_camera(corners)[:, 2] > 0).all()
+        camera = camera_of(SCENE, f"orbit:{angle}", (300, 200))
+        pixels = camera.project(corners)
+        assert (camera.to_camera(corners)[:, 2] > 0).all()
         assert (pixels >= 0).all()
         assert (pixels <= [300, 200]).all()
         spread = pixels.max(axis=0) - pixels.min(axis=0)
@@ -175,12 +163,10 @@ def test_everything_fits_an_orbit_picture() -> None:
 
 
 def test_another_aspect_is_never_stretched() -> None:
-    scene = furnished_room(LIBRARY)
     for size in ((320, 240), (500, 200), (200, 500)):
-        view = scene_view(scene, "photo", size)
-        assert isinstance(view, PinholeView)
-        assert view.camera.intrinsics.fx == pytest.approx(view.camera.intrinsics.fy)
-        assert (view.width, view.height) == size
+        k = camera_of(SCENE, size=size).intrinsics
+        assert k.fx == pytest.approx(k.fy)
+        assert (k.width, k.height) == size
 
 
 def test_an_object_darkens_the_floor_beneath_it() -> None:
@@ -188,33 +174,29 @@ def test_an_object_darkens_the_floor_beneath_it() -> None:
     scene = Scene(eye_camera(), Architecture((floor,)), (place(LIBRARY, "t", "table", (0, 3, 0.36)),))
     lit = picture(replace(scene, objects=()), LIBRARY, size=SMALL).astype(int)
     shaded = picture(scene, LIBRARY, size=SMALL).astype(int)
-    view = scene_view(scene, "photo", SMALL)
-    assert isinstance(view, PinholeView)
-    column, row = view.camera.project(np.array([0.0, 3.0, 0.0]))
-    difference = (lit - shaded)[int(row) - 1 : int(row) + 2, int(column) - 5 : int(column) + 5]
+    row, column = pixel(camera_of(scene), (0.0, 3.0, 0.0))
+    difference = (lit - shaded)[row - 1 : row + 2, column - 5 : column + 5]
     assert difference.mean() > 25
 
 
 def test_refusals() -> None:
-    scene = furnished_room(LIBRARY)
     with pytest.raises(InputError, match="sideways"):
-        picture(scene, LIBRARY, view="sideways")
+        picture(SCENE, LIBRARY, view="sideways")
     with pytest.raises(InputError, match="0x10"):
-        picture(scene, LIBRARY, size=(0, 10))
+        picture(SCENE, LIBRARY, size=(0, 10))
     with pytest.raises(SceneError, match="no camera"):
-        picture(replace(scene, camera=None), LIBRARY)
+        picture(replace(SCENE, camera=None), LIBRARY)
 
 
 def test_empty_scene_is_plain_background() -> None:
-    image = picture(Scene(eye_camera()), LIBRARY, size=SMALL, effort=QUICK)
+    image = quick(Scene(eye_camera()))
     assert (image == BACKGROUND).all()
     assert picture(Scene(), LIBRARY, view="orbit:10", size=SMALL).shape == (120, 160, 3)
 
 
 def test_same_scene_same_bytes() -> None:
-    scene = furnished_room(LIBRARY)
-    first = picture(scene, LIBRARY, size=SMALL)
-    assert first.tobytes() == picture(scene, LIBRARY, size=SMALL).tobytes()
+    first = picture(SCENE, LIBRARY, size=SMALL)
+    assert first.tobytes() == picture(SCENE, LIBRARY, size=SMALL).tobytes()
 
 
 def test_a_photographed_plane_is_not_lit_a_second_time() -> None:
@@ -224,8 +206,8 @@ def test_a_photographed_plane_is_not_lit_a_second_time() -> None:
     planes = tuple(replace(p, texture="c") if p.id == "ceiling" else p for p in room.planes)
     scene = Scene(eye_camera(), Architecture(planes))
     row, column = 3, 80
-    photo = picture(scene, LIBRARY, size=SMALL, textures={"c": grey}, effort=QUICK)[row, column]
-    bare = picture(scene, LIBRARY, size=SMALL, textures={"c": grey}, photographed=False, effort=QUICK)[row, column]
+    photo = quick(scene, textures={"c": grey})[row, column]
+    bare = quick(scene, textures={"c": grey}, photographed=False)[row, column]
     assert np.abs(photo.astype(int) - 180).max() < 45
     assert (bare < photo).all()
 
@@ -237,27 +219,23 @@ def test_photographed_walls_do_not_darken_one_another() -> None:
     planes = tuple(replace(p, texture=p.id) for p in room.planes)
     textures = {p.id: grey if p.role == "floor" else black for p in planes}
     scene = Scene(eye_camera(), Architecture(planes))
-    shown = picture(scene, LIBRARY, size=SMALL, textures=textures, effort=QUICK)
+    shown = quick(scene, textures=textures)
     floor = shown.min(axis=-1) > 170
     assert floor.mean() > 0.1
     assert shown[floor].std() < 2.0
     bare = tuple(p if p.role == "floor" else replace(p, texture=None, colour=(0.04,) * 3) for p in planes)
-    beside = picture(
-        replace(scene, architecture=Architecture(bare)), LIBRARY, size=SMALL, textures=textures, effort=QUICK
-    )
+    beside = quick(replace(scene, architecture=Architecture(bare)), textures=textures)
     assert np.abs(beside.astype(int) - shown).max() < 12  # a plain colour of the same photo is in the same light
     black_paint = SurfaceFinish("paint", (0.04,) * 3)
     painted = tuple(p if p.role == "floor" else replace(p, finish=black_paint) for p in bare)
-    darker = picture(
-        replace(scene, architecture=Architecture(painted)), LIBRARY, size=SMALL, textures=textures, effort=QUICK
-    )
+    darker = quick(replace(scene, architecture=Architecture(painted)), textures=textures)
     assert (shown[floor].astype(int) - darker[floor]).max() > 10
 
 
 def test_progress_rises_to_the_end_and_changes_nothing() -> None:
-    scene, events = furnished_room(LIBRARY), []
-    told = picture(scene, LIBRARY, size=SMALL, effort=QUICK, progress=Progress(events.append))
-    np.testing.assert_array_equal(told, picture(scene, LIBRARY, size=SMALL, effort=QUICK))
+    scene, events = SCENE, []
+    told = quick(scene, progress=Progress(events.append))
+    np.testing.assert_array_equal(told, quick(scene))
     shares = [e.fraction for e in events]
     assert shares == sorted(shares)
     assert shares[-1] == pytest.approx(1.0)
@@ -273,4 +251,4 @@ def test_a_picture_is_cancelled_at_every_step(after: str) -> None:
             token.cancel()
 
     with pytest.raises(Cancelled):
-        picture(furnished_room(LIBRARY), LIBRARY, size=(160, 240), effort=QUICK, progress=Progress(stop, token))
+        picture(SCENE, LIBRARY, size=(160, 240), effort=QUICK, progress=Progress(stop, token))

@@ -15,7 +15,6 @@ from diorama_core.render.raycast import (
     PinholeView,
     bands,
     pixel_footprint,
-    render_buffers,
 )
 from diorama_core.scene.types import Camera, Intrinsics, Pose
 from tests.primitives import eye_camera
@@ -36,14 +35,14 @@ def box_at(position: tuple[float, float, float]) -> tuple[trimesh.Trimesh, np.nd
 def test_depth_is_z_not_distance() -> None:
     """A wall facing the camera has one depth all over, however far the corner pixels are."""
     wall = trimesh.creation.box((50, 0.1, 50)), Pose.upright((0, 3.05, 0)).matrix
-    buffers = render_buffers([wall], camera())
+    buffers = MeshCaster([wall]).buffers(camera())
     assert buffers.silhouette.all()
     np.testing.assert_allclose(buffers.depth_m, 3.0, atol=1e-4)
     np.testing.assert_allclose(buffers.normals_world, np.broadcast_to([0, -1, 0], (48, 64, 3)), atol=1e-5)
 
 
 def test_the_nearer_mesh_hides_the_farther() -> None:
-    buffers = render_buffers([box_at((0, 5, 0)), box_at((0, 3, 0)), box_at((1.6, 4, 0))], camera())
+    buffers = MeshCaster([box_at((0, 5, 0)), box_at((0, 3, 0)), box_at((1.6, 4, 0))]).buffers(camera())
     assert buffers.instance[24, 32] == 1
     assert set(np.unique(buffers.instance)) == {-1, 1, 2}
     assert buffers.instance.dtype == np.int32
@@ -59,7 +58,7 @@ def test_what_rays_meet_is_what_the_buffers_show() -> None:
 
 
 def test_nothing_to_see() -> None:
-    buffers = render_buffers([], camera())
+    buffers = MeshCaster([]).buffers(camera())
     assert not buffers.silhouette.any()
     assert buffers.depth_m.shape == (48, 64)
 
@@ -70,7 +69,7 @@ def test_pixels_agree_with_projection(x: float, y: float, z: float, yaw: float, 
     pose = Pose.upright((x, y, z), yaw, (0.6, stretch, 0.5))
     box = trimesh.creation.box((1, 1, 1))
     view = eye_camera(160, 120, 90.0)
-    buffers = render_buffers([(box, pose.matrix)], view)
+    buffers = MeshCaster([(box, pose.matrix)]).buffers(view)
     corners = pose.apply(box.vertices)
     pixels = view.project(corners)
     low, high = pixels.min(axis=0), pixels.max(axis=0)
@@ -89,7 +88,7 @@ def test_pixels_agree_with_projection(x: float, y: float, z: float, yaw: float, 
 
 def test_normals_face_the_viewer() -> None:
     view = eye_camera(80, 60)
-    buffers = render_buffers([(trimesh.creation.icosphere(3, 0.8), Pose.upright((0, 3, 1)).matrix)], view)
+    buffers = MeshCaster([(trimesh.creation.icosphere(3, 0.8), Pose.upright((0, 3, 1)).matrix)]).buffers(view)
     inside = buffers.silhouette
     rows, columns = np.nonzero(inside)
     rays = view.rays(np.stack([columns + 0.5, rows + 0.5], axis=1))
@@ -106,7 +105,7 @@ def test_parallel_rays_keep_sizes() -> None:
 
 def test_same_input_same_bytes() -> None:
     meshes = [box_at((0.1, 3, 0.2)), box_at((0.7, 4, -0.3))]
-    first, second = render_buffers(meshes, camera()), render_buffers(meshes, camera())
+    first, second = MeshCaster(meshes).buffers(camera()), MeshCaster(meshes).buffers(camera())
     assert first.depth_m.tobytes() == second.depth_m.tobytes()
     assert first.instance.tobytes() == second.instance.tobytes()
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from diorama_core.errors import Cancelled, LibraryError
 from diorama_core.library.catalogue import BuiltInLibrary, built_in_library
 from diorama_core.progress import CancelToken, Progress
-from diorama_core.render.raycast import render_buffers
+from diorama_core.render.raycast import MeshCaster
 from diorama_core.render.template_cache import TemplateCache
 from diorama_core.render.templates import PAPER_GRID, TemplateGrid, Templates, render_templates
 
@@ -43,7 +43,7 @@ def test_depth_mask_and_normals_agree_with_the_general_ray_caster(
 ) -> None:
     library, name, templates = chair
     for view in range(0, len(SMALL), 5):
-        truth = render_buffers([(library.mesh(name), np.eye(4))], templates.camera(view))
+        truth = MeshCaster([(library.mesh(name), np.eye(4))]).buffers(templates.camera(view))
         assert np.mean(templates.mask[view] != truth.silhouette) < 1e-3
         both = templates.mask[view] & truth.silhouette
         assert both.sum() > 100

@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
+import numpy as np
+
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.footprints import footprint_of, lie_within
 from diorama_core.editing.positioning import Positioner
@@ -38,6 +40,16 @@ def done(scene: Scene, *asked: Edit) -> Scene:
         scene = applier.apply(scene, edit).scene
     check_scene(scene)
     return scene
+
+
+def apart_m(scene: Scene, first: str, second: str) -> float:
+    """From middle to middle, seen from above."""
+    return float(np.linalg.norm((scene.object(first).pose.position - scene.object(second).pose.position)[:2]))
+
+
+def turned_deg(after: Scene, before: Scene, object_id: str) -> float:
+    turn = after.object(object_id).pose.yaw_rad - before.object(object_id).pose.yaw_rad
+    return abs(float(np.degrees(np.arctan2(np.sin(turn), np.cos(turn)))))
 
 
 def assert_sound(before: Scene, after: Scene) -> None:

@@ -12,12 +12,7 @@ from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Scene
 from diorama_core.text.edit_apply import EditApplier
 from diorama_core.text.edit_plan import Edit, Insert, Move, Place, Remove, Restyle
-from tests.text.edited import done, living_room
-
-
-@pytest.fixture
-def living() -> Scene:
-    return living_room()
+from tests.text.edited import done
 
 
 def test_removed_furniture_goes_with_what_is_on_it(living: Scene) -> None:

@@ -11,26 +11,19 @@ from hypothesis import strategies as st
 from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.types import Scene
-from diorama_core.synthesis.grammar import furnish_room
 from diorama_core.text.compose import compose_room
 from diorama_core.text.edit_grammar import edits_of
-from diorama_core.text.edit_plan import Insert, Move, Paint, Place, Remove, Resize, Restyle, Shift, Swap, Turn
+from diorama_core.text.edit_plan import Edit, Insert, Move, Paint, Place, Remove, Resize, Restyle, Shift, Swap, Turn
 from diorama_core.text.edit_wording import clauses_of
 from diorama_core.text.looks import look_of
 from diorama_core.text.phrases import noun_phrase, split_places
 from diorama_core.text.selecting import Selector
-from tests.text.edited import living_room
+
+LIBRARY = built_in_library()
 
 
-@pytest.fixture(scope="module")
-def living() -> Scene:
-    return living_room()
-
-
-@pytest.fixture(scope="module")
-def dining() -> Scene:
-    """A table on a rug with five chairs."""
-    return furnish_room(2, "dining", built_in_library(), outline="box", clutter=6)
+def edits(command: str, scene: Scene, **named: list[str]) -> tuple[Edit, ...]:
+    return edits_of(command, scene, LIBRARY, **named)
 
 
 def on(*targets: str) -> list[Place]:
@@ -87,16 +80,15 @@ LIVING = {
 
 @pytest.mark.parametrize("command", list(LIVING))
 def test_commands_become_edits(command: str, living: Scene) -> None:
-    assert edits_of(command, living, built_in_library()) == (LIVING[command],)
+    assert edits(command, living) == (LIVING[command],)
 
 
 def test_each_of_two_has_its_own_look_and_place(living: Scene) -> None:
-    library = built_in_library()
-    looks = edits_of("make the sofa white and the piano black", living, library)
+    looks = edits("make the sofa white and the piano black", living)
     assert looks == (Restyle(objects=["sofa_1"], look="white"), Restyle(objects=["piano_1"], look="black"))
-    both = edits_of("make the sofa and the piano black", living, library)
+    both = edits("make the sofa and the piano black", living)
     assert both == (Restyle(objects=["sofa_1", "piano_1"], look="black"),)
-    places = edits_of("move the plant in the corner and the side table beside the sofa", living, library)
+    places = edits("move the plant in the corner and the side table beside the sofa", living)
     assert places == (
         Move(objects=["plant_1"], places=[Place(relation="in corner")]),
         Move(objects=["side_table_1"], places=beside("sofa_1")),
@@ -104,26 +96,24 @@ def test_each_of_two_has_its_own_look_and_place(living: Scene) -> None:
 
 
 def test_what_should_be_is_made_so_and_ordinals_choose(living: Scene, dining: Scene) -> None:
-    library = built_in_library()
-    assert edits_of("the sofa should be black", living, library) == (Restyle(objects=["sofa_1"], look="black"),)
-    assert edits_of("remove the second picture", living, library) == (Remove(objects=["picture_2"]),)
-    assert edits_of("remove the last picture", living, library) == (Remove(objects=["picture_4"]),)
-    facing = edits_of("the sofa and the piano should face each other", living, library)
+    assert edits("the sofa should be black", living) == (Restyle(objects=["sofa_1"], look="black"),)
+    assert edits("remove the second picture", living) == (Remove(objects=["picture_2"]),)
+    assert edits("remove the last picture", living) == (Remove(objects=["picture_4"]),)
+    facing = edits("the sofa and the piano should face each other", living)
     assert facing == (Move(objects=["sofa_1", "piano_1"], places=[Place(relation="facing", targets=[])]),)
 
 
 def test_a_lamp_that_goes_somewhere_is_none_of_the_ceiling() -> None:
-    scene = compose_room("a living room with a sofa and a floor lamp", built_in_library()).scene
+    scene = compose_room("a living room with a sofa and a floor lamp", LIBRARY).scene
     assert {o.category for o in scene.objects} >= {"ceiling lamp", "floor lamp", "window"}
-    library = built_in_library()
-    moved = edits_of("move the lamp beside the sofa", scene, library)
+    moved = edits("move the lamp beside the sofa", scene)
     assert moved == (Move(objects=["floor_lamp_1"], places=beside("sofa_1")),)
-    under = edits_of("move the sofa under the window", scene, library)
+    under = edits("move the sofa under the window", scene)
     assert under == (Move(objects=["sofa_1"], places=[Place(relation="near", targets=["window_1"])]),)
 
 
 def test_lists_are_several_edits_and_clauses_follow_each_other(dining: Scene) -> None:
-    found = edits_of("add a floor lamp and two plants", dining, built_in_library())
+    found = edits("add a floor lamp and two plants", dining)
     assert [e.what for e in found if isinstance(e, Insert)] == ["floor lamp", "plants"]
     assert clauses_of("Remove the rug, then move the table and paint the walls red.") == (
         "remove the rug",
@@ -136,34 +126,30 @@ def test_lists_are_several_edits_and_clauses_follow_each_other(dining: Scene) ->
 
 
 def test_numbers_of_a_kind_are_changed(living: Scene, dining: Scene) -> None:
-    library = built_in_library()
-    assert edits_of("double the number of books", living, library) == (
-        Insert(what="books", count=1, places=on("sideboard_1")),
-    )
-    assert edits_of("triple the pictures", living, library) == (Insert(what="picture", count=8),)
-    assert edits_of("double the size of the sofa", living, library) == (Resize(objects=["sofa_1"], factor=2.0),)
-    (halved,) = edits_of("halve the number of chairs", dining, library)
+    assert edits("double the number of books", living) == (Insert(what="books", count=1, places=on("sideboard_1")),)
+    assert edits("triple the pictures", living) == (Insert(what="picture", count=8),)
+    assert edits("double the size of the sofa", living) == (Resize(objects=["sofa_1"], factor=2.0),)
+    (halved,) = edits("halve the number of chairs", dining)
     assert isinstance(halved, Remove)
     assert len(halved.objects) == 3
     with pytest.raises(EditRefused, match="only one sofa"):
-        edits_of("halve the number of sofas", living, library)
-    assert edits_of("delete all but one of the pictures", living, library) == (
+        edits("halve the number of sofas", living)
+    assert edits("delete all but one of the pictures", living) == (
         Remove(objects=["picture_2", "picture_3", "picture_4"]),
     )
     with pytest.raises(EditRefused, match="only 4"):
-        edits_of("remove all but six pictures", living, library)
+        edits("remove all but six pictures", living)
 
 
 def test_every_lamp_is_of_every_sort_and_everything_is_what_can_be_meant() -> None:
-    library = built_in_library()
-    scene = compose_room("a sofa, a floor lamp, a wooden coffee table, a rug and a lamp on a side table", library).scene
-    (turned,) = edits_of("turn every lamp around", scene, library)
+    scene = compose_room("a sofa, a floor lamp, a wooden coffee table, a rug and a lamp on a side table", LIBRARY).scene
+    (turned,) = edits("turn every lamp around", scene)
     assert isinstance(turned, Turn)
     assert {scene.object(i).category for i in turned.objects} == {"lamp", "floor lamp", "ceiling lamp"}
-    (moved,) = edits_of("push everything against the walls", scene, library)
+    (moved,) = edits("push everything against the walls", scene)
     assert isinstance(moved, Move)
     assert {scene.object(i).category for i in moved.objects} == {"sofa", "floor lamp", "coffee table", "side table"}
-    (white,) = edits_of("make all the wooden furniture white", scene, library)
+    (white,) = edits("make all the wooden furniture white", scene)
     assert isinstance(white, Restyle)
     assert "coffee_table_1" in white.objects
     assert not {"sofa", "rug", "lamp", "floor lamp"} & {scene.object(i).category for i in white.objects}
@@ -172,30 +158,29 @@ def test_every_lamp_is_of_every_sort_and_everything_is_what_can_be_meant() -> No
 def test_of_several_with_one_label_none_is_taken_unasked(living: Scene) -> None:
     alike = tuple(replace(o, label="picture") if o.category == "picture" else o for o in living.objects)
     with pytest.raises(EditRefused, match=r"there are 4 of these.*the second picture"):
-        edits_of("remove the picture", replace(living, objects=alike), built_in_library())
+        edits("remove the picture", replace(living, objects=alike))
 
 
 def test_armchairs_are_chairs_where_there_are_no_others(living: Scene) -> None:
     sofa = living.object("sofa_1")
     only = replace(living, objects=tuple(replace(o, category="armchair") if o is sofa else o for o in living.objects))
-    assert Selector(only, built_in_library()).objects("all chairs") == ("sofa_1",)
+    assert Selector(only, LIBRARY).objects("all chairs") == ("sofa_1",)
     with pytest.raises(EditRefused, match="there is no chair"):
-        Selector(living, built_in_library()).objects("all chairs")
+        Selector(living, LIBRARY).objects("all chairs")
 
 
 def test_all_and_some_of_a_kind(dining: Scene) -> None:
-    library = built_in_library()
-    every = edits_of("make all chairs wooden", dining, library)[0]
+    every = edits("make all chairs wooden", dining)[0]
     assert isinstance(every, Restyle)
     assert len(every.objects) == 5
-    two = edits_of("remove two chairs", dining, library)[0]
+    two = edits("remove two chairs", dining)[0]
     assert isinstance(two, Remove)
     assert len(two.objects) == 2
     with pytest.raises(EditRefused, match="there are 5 of these"):
-        edits_of("remove the chair", dining, library)
-    chosen = edits_of("remove the chair", dining, library, selected=["chair_3"])
+        edits("remove the chair", dining)
+    chosen = edits("remove the chair", dining, selected=["chair_3"])
     assert chosen == (Remove(objects=["chair_3"]),)
-    assert edits_of("remove it", dining, library, last=["chair_2"]) == (Remove(objects=["chair_2"]),)
+    assert edits("remove it", dining, last=["chair_2"]) == (Remove(objects=["chair_2"]),)
 
 
 REFUSED = {
@@ -218,7 +203,7 @@ REFUSED = {
 @pytest.mark.parametrize("command", list(REFUSED))
 def test_what_is_not_understood_is_named_in_one_line(command: str, living: Scene) -> None:
     with pytest.raises(EditRefused) as refused:
-        edits_of(command, living, built_in_library())
+        edits(command, living)
     assert REFUSED[command] in str(refused.value)
     assert "\n" not in str(refused.value)
 
@@ -231,7 +216,7 @@ def test_any_text_is_edits_or_a_refusal(living: Scene, start: str, text: str) ->
     said = ""
     try:
         for clause in clauses_of(start + text):
-            edits_of(clause, living, built_in_library())
+            edits(clause, living)
     except EditRefused as refused:
         said = str(refused)
     assert "\n" not in said, "one line"
@@ -263,7 +248,7 @@ def test_looks() -> None:
 
 
 def test_selectors_tell_objects_by_place_and_size(living: Scene, dining: Scene) -> None:
-    selector = Selector(living, built_in_library())
+    selector = Selector(living, LIBRARY)
     assert selector.objects("everything", split_places("on the sideboard")[1]) == ("lamp_1", "books_1")
-    assert len(Selector(dining, built_in_library()).objects("the chairs", split_places("around the table")[1])) >= 3
+    assert len(Selector(dining, LIBRARY).objects("the chairs", split_places("around the table")[1])) >= 3
     assert "sofa" in selector.inventory()

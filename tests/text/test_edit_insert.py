@@ -13,13 +13,7 @@ from diorama_core.scene.types import Scene
 from diorama_core.text.compose import compose_room
 from diorama_core.text.edit_insert import RUG_MARGIN_M, insert
 from diorama_core.text.edit_plan import Insert, Place
-from tests.text.edited import assert_sound, done, living_room
-
-
-@pytest.fixture
-def living() -> Scene:
-    return living_room()
-
+from tests.text.edited import assert_sound, done
 
 MOVES = [
     ("floor lamp", Place(relation="beside", targets=["sofa_1"])),
@@ -46,18 +40,17 @@ def test_new_objects_go_where_they_are_wished(living: Scene, what: str, place: P
 
 
 def test_a_rug_is_as_large_as_what_it_goes_under(living: Scene) -> None:
-    outcome = insert(
-        Positioner(built_in_library()), living, Insert(what="rug"), [Relation("under", ("coffee_table_1",))]
-    )
+    under = [Place(relation="under", targets=["coffee_table_1"])]
+    outcome = insert(Positioner(built_in_library()), living, Insert(what="rug", places=under))
     rug, table = outcome.scene.object(outcome.touched[0]), living.object("coffee_table_1")
     assert min(rug.size_m[:2]) >= min(table.size_m[:2]) + 2 * RUG_MARGIN_M - 0.1
 
 
 def test_several_share_what_they_are_beside(living: Scene) -> None:
-    relation = Relation("beside", ("sofa_1", "piano_1"))
-    outcome = insert(Positioner(built_in_library()), living, Insert(what="basket", count=2), [relation])
+    beside = Place(relation="beside", targets=["sofa_1", "piano_1"])
+    outcome = insert(Positioner(built_in_library()), living, Insert(what="basket", count=2, places=[beside]))
     frame = RoomFrame.of(outcome.scene)
-    for object_id, target in zip(outcome.touched, relation.targets, strict=True):
+    for object_id, target in zip(outcome.touched, beside.targets, strict=True):
         assert is_met(outcome.scene, object_id, Relation("beside", (target,)), frame)
     assert len({outcome.scene.object(i).shape_id for i in outcome.touched}) == 1
 
@@ -67,7 +60,7 @@ def test_more_chairs_are_like_those_at_the_table_and_stand_there() -> None:
     scene = compose_room("a large table with four chairs around it", library).scene
     table = next(o for o in scene.objects if o.category == "table")
     before = {o.id for o in scene.objects}
-    after = insert(Positioner(library), scene, Insert(what="chair", count=2), ()).scene
+    after = insert(Positioner(library), scene, Insert(what="chair", count=2)).scene
     new = [o for o in after.objects if o.id not in before]
     assert {o.shape_id for o in new} == {o.shape_id for o in scene.objects if o.category == "chair"}
     for chair in new:

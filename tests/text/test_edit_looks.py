@@ -2,25 +2,13 @@
 
 from __future__ import annotations
 
-import pytest
-
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.record import record_of
 from diorama_core.scene.types import Scene
 from diorama_core.text.edit_looks import looking_like
 from diorama_core.text.edit_plan import Paint, Restyle, Swap
 from diorama_core.text.looks import is_made_of
-from tests.text.edited import assert_sound, dining_room, done, living_room
-
-
-@pytest.fixture
-def dining() -> Scene:
-    return dining_room()
-
-
-@pytest.fixture
-def living() -> Scene:
-    return living_room()
+from tests.text.edited import assert_sound, done
 
 
 def test_materials_swap_shapes_and_colours_paint(dining: Scene) -> None:

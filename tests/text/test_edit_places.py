@@ -13,12 +13,7 @@ from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from diorama_core.text.edit_places import lift_onto, shift
 from diorama_core.text.edit_plan import Move, Place, Remove, Resize, Shift, Turn
-from tests.text.edited import assert_sound, done, living_room
-
-
-@pytest.fixture
-def living() -> Scene:
-    return living_room()
+from tests.text.edited import apart_m, assert_sound, done
 
 
 def test_moved_objects_take_their_load_along(living: Scene) -> None:
@@ -43,33 +38,25 @@ def test_what_is_moved_by_a_length_goes_that_far_or_says_that_it_stepped_aside(l
     positioner = Positioner(built_in_library())
     before = living.object("plant_1").pose.position
     for way in (0.1, -0.1, 0.3, -0.3):
-        outcome = shift(positioner, living, ["plant_1"], Shift(objects=["plant_1"], right_m=way))
+        outcome = shift(positioner, living, Shift(objects=["plant_1"], right_m=way))
         gone = outcome.scene.object("plant_1").pose.position - before
         assert outcome.notes or np.linalg.norm(gone[:2]) == pytest.approx(abs(way), abs=1e-6)
         assert_sound(living, outcome.scene)
 
 
 def test_things_go_nearer_to_others_and_what_hangs_up_and_down(living: Scene) -> None:
-    positioner = Positioner(built_in_library())
-
-    def apart(scene: Scene) -> float:
-        return float(
-            np.linalg.norm((scene.object("piano_1").pose.position - scene.object("plant_1").pose.position)[:2])
-        )
-
-    away = shift(
-        positioner, living, ["plant_1"], Shift(objects=["plant_1"], toward="piano_1", toward_m=-0.1), "piano_1"
-    )
-    assert away.notes or apart(away.scene) == pytest.approx(apart(living) + 0.1, abs=1e-6)
+    positioner, pair = Positioner(built_in_library()), ("piano_1", "plant_1")
+    away = shift(positioner, living, Shift(objects=["plant_1"], toward="piano_1", toward_m=-0.1))
+    assert away.notes or apart_m(away.scene, *pair) == pytest.approx(apart_m(living, *pair) + 0.1, abs=1e-6)
     assert away.lines == ("move plant 1 0.1 m away from piano 1",)
-    raised = shift(positioner, living, ["picture_1"], Shift(objects=["picture_1"], up_m=0.05))
+    raised = shift(positioner, living, Shift(objects=["picture_1"], up_m=0.05))
     rise = raised.scene.object("picture_1").pose.position - living.object("picture_1").pose.position
     np.testing.assert_allclose(rise, [0.0, 0.0, 0.05], atol=1e-9)
     assert_sound(living, raised.scene)
     with pytest.raises(EditRefused, match="does not hang"):
-        shift(positioner, living, ["sofa_1"], Shift(objects=["sofa_1"], up_m=0.2))
+        shift(positioner, living, Shift(objects=["sofa_1"], up_m=0.2))
     with pytest.raises(EditRefused, match="leave its wall"):
-        shift(positioner, living, ["picture_1"], Shift(objects=["picture_1"], up_m=2.0))
+        shift(positioner, living, Shift(objects=["picture_1"], up_m=2.0))
 
 
 def test_nothing_is_moved_off_what_it_stands_on(living: Scene) -> None:
@@ -78,7 +65,7 @@ def test_nothing_is_moved_off_what_it_stands_on(living: Scene) -> None:
     front = living.object(edge.parent).pose.R_world_object[:, 0]
     off = Shift(objects=["lamp_1"], right_m=0.5 * float(front[0]), away_m=0.5 * float(front[1]))
     with pytest.raises(EditRefused, match="fall off"):
-        shift(Positioner(built_in_library()), living, ["lamp_1"], off)
+        shift(Positioner(built_in_library()), living, off)
 
 
 def test_a_rug_lifts_what_stands_wholly_on_it(living: Scene) -> None:

@@ -12,16 +12,10 @@ from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.perception.language.client import LmmSettings, strict_schema
 from diorama_core.scene.types import Scene
-from diorama_core.synthesis.grammar import furnish_room
 from diorama_core.text.edit_plan import EditPlan
 from diorama_core.text.editing_by_words import ProposedEdits, propose_edits
 from diorama_core.text.language import edit_prompt
 from tests.perception.language.stub_lmm import Answer, StubLmm, answering
-
-
-@pytest.fixture(scope="module")
-def dining() -> Scene:
-    return furnish_room(2, "dining", built_in_library(), outline="box", clutter=6)
 
 
 def asked(scene: Scene, command: str, *answers: Answer, timeout_s: float = 5.0, delay_s: float = 0.0) -> ProposedEdits:

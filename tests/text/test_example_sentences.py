@@ -16,7 +16,7 @@ from diorama_core.scene.room_edits import ceiling_height
 from diorama_core.scene.types import Scene
 from diorama_core.text.edit_wording import clauses_of
 from diorama_core.text.editing_by_words import propose_edits
-from tests.text.edited import assert_sound
+from tests.text.edited import apart_m, assert_sound, turned_deg
 
 Check = Callable[[Scene, Scene], bool]
 
@@ -38,15 +38,6 @@ def _way(after: Scene, before: Scene, object_id: str) -> np.ndarray:
     return np.asarray(after.object(object_id).pose.position - before.object(object_id).pose.position)
 
 
-def _far(scene: Scene, first: str, second: str) -> float:
-    return float(np.linalg.norm((scene.object(first).pose.position - scene.object(second).pose.position)[:2]))
-
-
-def _turned(after: Scene, before: Scene, object_id: str) -> float:
-    turn = after.object(object_id).pose.yaw_rad - before.object(object_id).pose.yaw_rad
-    return abs(float(np.degrees(np.arctan2(np.sin(turn), np.cos(turn)))))
-
-
 def _size(scene: Scene, object_id: str) -> np.ndarray:
     return np.asarray(scene.object(object_id).size_m)
 
@@ -54,7 +45,7 @@ def _size(scene: Scene, object_id: str) -> np.ndarray:
 CHAIRS = ("chair_1", "chair_2", "chair_3")
 DONE: dict[str, Check] = {
     "Put a reading lamp next to the armchair.": lambda a, b: (
-        _new(a, b) == ["floor lamp"] and _far(a, "floor_lamp_2", "armchair_1") < 1.0
+        _new(a, b) == ["floor lamp"] and apart_m(a, "floor_lamp_2", "armchair_1") < 1.0
     ),
     "Swap the two pictures.": lambda a, b: (
         abs(_way(a, b, "picture_1")[0] - 0.92) < 0.1 and abs(_way(a, b, "picture_2")[0] + 0.92) < 0.1
@@ -69,12 +60,12 @@ DONE: dict[str, Check] = {
     "I don't like the rug, remove it.": lambda a, b: _gone(a, b) == {"rug_1"},
     "Make the rug 50 % bigger.": lambda a, b: bool(np.allclose(_size(a, "rug_1"), 1.5 * _size(b, "rug_1"))),
     "Change the colour of the armchair to mustard yellow.": lambda a, b: a.object("armchair_1").colour is not None,
-    "Add a fourth chair to the table.": lambda a, b: _new(a, b) == ["chair"] and _far(a, "chair_4", "table_1") < 1.4,
+    "Add a fourth chair to the table.": lambda a, b: _new(a, b) == ["chair"] and apart_m(a, "chair_4", "table_1") < 1.4,
     "Hang the clock above the mirror.": lambda a, b: (
         abs(a.object("clock_1").pose.position[0] - a.object("mirror_1").pose.position[0]) < 0.8
     ),
     "Replace the plant on the coffee table with a vase.": lambda a, b: a.object("plant_1").category == "vase",
-    "Turn the armchair so it faces the sofa.": lambda a, b: _turned(a, b, "armchair_1") > 10.0,
+    "Turn the armchair so it faces the sofa.": lambda a, b: turned_deg(a, b, "armchair_1") > 10.0,
     "Give the armchair a cushion.": lambda a, b: a.children_of("armchair_1") == ("pillow_3",),
     "The ceiling is too low, make it 3 metres high.": lambda a, b: ceiling_height(a) == pytest.approx(3.0, abs=0.01),
     "Paint the back wall dark blue.": lambda a, b: (
@@ -89,8 +80,8 @@ DONE: dict[str, Check] = {
     "The sofa is too small, make it 40 cm longer.": lambda a, b: (
         float((_size(a, "sofa_1") - _size(b, "sofa_1"))[1]) == pytest.approx(0.4)
     ),
-    "Rotate the coffee table a quarter turn.": lambda a, b: _turned(a, b, "coffee_table_1") == pytest.approx(90.0),
-    "Bring the floor lamp over to the sofa.": lambda a, b: _far(a, "floor_lamp_1", "sofa_1") < 1.5,
+    "Rotate the coffee table a quarter turn.": lambda a, b: turned_deg(a, b, "coffee_table_1") == pytest.approx(90.0),
+    "Bring the floor lamp over to the sofa.": lambda a, b: apart_m(a, "floor_lamp_1", "sofa_1") < 1.5,
     "Replace all the chairs with wooden stools.": lambda a, b: all(a.object(c).category == "stool" for c in CHAIRS),
     "Lower the ceiling lamp by 20 cm.": lambda a, b: (
         float(np.ptp(_way(a, b, "ceiling_lamp_1"))) == pytest.approx(0.1)  # its middle, as its top stays
@@ -113,11 +104,11 @@ MORE: dict[str, Check] = {
         _way(a, b, i)[0] == pytest.approx(0.5, abs=0.02) for i in ("table_1", "vase_3", *CHAIRS)
     ),
     "Place a desk with an office chair by the right wall.": lambda a, b: (
-        sorted(_new(a, b)) == ["desk", "office chair"] and _far(a, "desk_1", "office_chair_1") < 1.0
+        sorted(_new(a, b)) == ["desk", "office chair"] and apart_m(a, "desk_1", "office_chair_1") < 1.0
     ),
     "Put a cushion on each chair.": lambda a, b: all(len(a.children_of(c)) == 1 for c in CHAIRS),
     "Take the cup and put it on the bookshelf.": lambda a, b: "cup_1" in a.children_of("bookshelf_1"),
-    "I'd like the armchair next to the bookshelf.": lambda a, b: _far(a, "armchair_1", "bookshelf_1") < 1.5,
+    "I'd like the armchair next to the bookshelf.": lambda a, b: apart_m(a, "armchair_1", "bookshelf_1") < 1.5,
     "The room is too dark.": lambda a, b: a.light_settings.exposure_ev > b.light_settings.exposure_ev,
     "Show me the room in the evening with the lamps on.": lambda a, b: (
         a.light_settings.hour == 18.5 and bool(a.light_settings.lamps_on)

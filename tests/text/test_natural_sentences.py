@@ -7,20 +7,24 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from diorama_core.editing.footprints import footprint_of, gaps
+from diorama_core.editing.footprints import gap_between
 from diorama_core.errors import EditRefused
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.scene.room_edits import ceiling_height
 from diorama_core.scene.types import Scene
 from diorama_core.text.edit_room import gap_to_wall
 from diorama_core.text.editing_by_words import propose_edits
-from tests.text.edited import dining_room, living_room
+from tests.text.edited import apart_m, dining_room, living_room, turned_deg
 
 Check = Callable[[Scene, Scene], bool]
 
 
+def _count(scene: Scene, category: str) -> int:
+    return sum(o.category == category for o in scene.objects)
+
+
 def _new(after: Scene, before: Scene, category: str) -> int:
-    return sum(o.category == category for o in after.objects) - sum(o.category == category for o in before.objects)
+    return _count(after, category) - _count(before, category)
 
 
 def _size(scene: Scene, object_id: str, axis: int) -> float:
@@ -31,21 +35,8 @@ def _place(scene: Scene, object_id: str) -> np.ndarray:
     return scene.object(object_id).pose.position
 
 
-def _distance(scene: Scene, first: str, second: str) -> float:
-    return float(np.linalg.norm((_place(scene, first) - _place(scene, second))[:2]))
-
-
 def _gap(scene: Scene, first: str, second: str) -> float:
-    return float(gaps(footprint_of(scene.object(first))[None], footprint_of(scene.object(second)))[0])
-
-
-def _count(scene: Scene, category: str) -> int:
-    return sum(o.category == category for o in scene.objects)
-
-
-def _turned(after: Scene, before: Scene, object_id: str) -> float:
-    turn = after.object(object_id).pose.yaw_rad - before.object(object_id).pose.yaw_rad
-    return abs(float(np.degrees(np.arctan2(np.sin(turn), np.cos(turn)))))
+    return gap_between(scene.object(first), scene.object(second))
 
 
 def _finishes(scene: Scene, role: str) -> list:
@@ -73,7 +64,7 @@ NATURAL: dict[str, Check] = {
         float(np.linalg.norm(_place(a, "sofa_1") - _place(b, "sofa_1"))), 0.5
     ),
     "Push the coffee table 20 cm closer to the sofa.": lambda a, b: (
-        _distance(a, "coffee_table_1", "sofa_1") < _distance(b, "coffee_table_1", "sofa_1")
+        apart_m(a, "coffee_table_1", "sofa_1") < apart_m(b, "coffee_table_1", "sofa_1")
     ),
     "Pull the sideboard away from the wall a bit.": lambda a, b: _about(
         float((_place(a, "sideboard_1") - _place(b, "sideboard_1")) @ b.plane("wall_1").normal), 0.2
@@ -81,16 +72,16 @@ NATURAL: dict[str, Check] = {
     "Make the sofa 30 cm wider.": lambda a, b: _about(_size(a, "sofa_1", 1) - _size(b, "sofa_1", 1), 0.3),
     "The television should be 120 cm wide.": lambda a, b: _about(_size(a, "television_1", 1), 1.2),
     "Make the plant half as tall.": lambda a, b: _about(_size(a, "plant_1", 2), _size(b, "plant_1", 2) / 2),
-    "Rotate the coffee table by 90 degrees.": lambda a, b: _about(_turned(a, b, "coffee_table_1"), 90.0),
-    "Turn the sofa around.": lambda a, b: _about(_turned(a, b, "sofa_1"), 180.0),
+    "Rotate the coffee table by 90 degrees.": lambda a, b: _about(turned_deg(a, b, "coffee_table_1"), 90.0),
+    "Turn the sofa around.": lambda a, b: _about(turned_deg(a, b, "sofa_1"), 180.0),
     "Turn the chairs so that they face the window.": lambda a, b: (
-        sum(_turned(a, b, o.id) > 1.0 for o in b.objects if o.category == "chair") >= 4
+        sum(turned_deg(a, b, o.id) > 1.0 for o in b.objects if o.category == "chair") >= 4
     ),
     "Swap the coffee table for a round one.": lambda a, b: _about(
         _size(a, "coffee_table_1", 0), _size(a, "coffee_table_1", 1)
     ),
     "Make a copy of the side table on the other side of the sofa.": lambda a, b: (
-        _new(a, b, "side table") == 1 and _distance(a, "side_table_1", "side_table_2") > 1.0
+        _new(a, b, "side table") == 1 and apart_m(a, "side_table_1", "side_table_2") > 1.0
     ),
     "Give the sofa a dark green colour.": lambda a, b: a.object("sofa_1").colour is not None,
     "The sofa should be leather.": lambda a, b: (
@@ -111,7 +102,7 @@ NATURAL: dict[str, Check] = {
     "Open the door.": lambda a, b: a.object("door_1").open_share == 1.0,
     "Hang the pictures a little higher.": lambda a, b: all(_place(a, p)[2] > _place(b, p)[2] for p in PICTURES),
     "Line up the pictures.": lambda a, b: float(np.ptp([_place(a, p)[2] for p in PICTURES])) < 1e-6,
-    "Centre the rug under the coffee table.": lambda a, b: _distance(a, "rug_1", "coffee_table_1") < 0.1,
+    "Centre the rug under the coffee table.": lambda a, b: apart_m(a, "rug_1", "coffee_table_1") < 0.1,
     "Make the light warmer.": lambda a, b: a.light_settings != b.light_settings,
     "Lock the piano.": lambda a, b: a.object("piano_1").locked,
     "Hide the ceiling lamp.": lambda a, b: a.object("ceiling_lamp_1").hidden,
@@ -134,7 +125,7 @@ REPORTED: dict[str, Check] = {
     "paint the ceiling darker": lambda a, b: (
         np.mean(_finishes(a, "ceiling")[0].colour) < np.mean(b.architecture.by_role("ceiling")[0].colour)
     ),
-    "turn the television towards the window": lambda a, b: _turned(a, b, "television_1") > 1.0,
+    "turn the television towards the window": lambda a, b: turned_deg(a, b, "television_1") > 1.0,
 }
 MORE: dict[str, Check] = {
     "set the height of the plant to 1.5 m": lambda a, b: _about(_size(a, "plant_1", 2), 1.5),
@@ -159,7 +150,7 @@ MORE: dict[str, Check] = {
     "I want the piano gone.": lambda a, b: not a.has_object("piano_1"),
     "I don't need the radiator.": lambda a, b: not a.has_object("radiator_1"),
     "I'd prefer the piano against the opposite wall.": lambda a, b: (
-        _distance(a, "piano_1", "sofa_1") != (_distance(b, "piano_1", "sofa_1"))
+        apart_m(a, "piano_1", "sofa_1") != (apart_m(b, "piano_1", "sofa_1"))
     ),
     "The rug is a bit too small, make it 3 by 2 metres.": lambda a, b: (
         _about(max(_size(a, "rug_1", 0), _size(a, "rug_1", 1)), 3.0)
@@ -185,7 +176,7 @@ MORE: dict[str, Check] = {
     "Make the room 6 by 5 metres.": lambda a, b: _about(_lengths(a)[0], 5.0) and _about(_lengths(a)[1], 6.0),
     "Let me see the room at night.": lambda a, b: a.light_settings.hour == 23.0,
     "Please remove anything that is on the sideboard.": lambda a, b: not a.children_of("sideboard_1"),
-    "Turn the television so it faces the window.": lambda a, b: _turned(a, b, "television_1") > 1.0,
+    "Turn the television so it faces the window.": lambda a, b: turned_deg(a, b, "television_1") > 1.0,
     "Push the sofa back against the wall.": lambda a, b: gap_to_wall(a, "sofa_1") < 0.1,
 }
 NOT_UNDERSTOOD = {

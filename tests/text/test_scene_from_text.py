@@ -52,7 +52,7 @@ def room(*objects) -> Scene:
 def unseen(scene: Scene, library: ShapeLibrary, camera: Camera) -> frozenset[str]:
     """Ids of the objects that a picture hardly shows."""
     meshes = [(library.mesh(o.shape_id), o.pose.matrix) for o in scene.objects]
-    seen = MeshCaster(meshes).buffers(scene_from_text._probe(camera)).instance
+    seen = MeshCaster(meshes).buffers(camera.resize(*scene_from_text.PROBE_PX)).instance
     pixels = np.bincount(seen[seen >= 0].ravel(), minlength=len(scene.objects))
     return frozenset(o.id for o, n in zip(scene.objects, pixels, strict=True) if n < scene_from_text.SEEN_PX)
 

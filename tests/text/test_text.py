@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
+from diorama_core.editing.habits import usual_relations_of
 from diorama_core.editing.relations import Relation, RelationKind, is_met
 from diorama_core.editing.room_frame import RoomFrame
 from diorama_core.errors import InputError, UnavailableError
@@ -20,13 +21,14 @@ from diorama_core.library.taxonomy import CATEGORIES, category
 from diorama_core.perception.language.client import LmmSettings
 from diorama_core.scene.support import check_scene
 from diorama_core.text.compose import compose_room
-from diorama_core.text.customs import ESSENTIALS, stands_in_for, usual_relations_of
 from diorama_core.text.language import LOOKS
 from diorama_core.text.pictures import ImageSettings, picture_of
 from diorama_core.text.prompt import RequestedObject, RoomRequest, Wish, read_prompt
+from diorama_core.text.requested_room import ESSENTIALS, stands_in_for
 from diorama_core.text.scene_from_text import finish, scene_from_text
 from tests.perception.language.stub_lmm import StubLmm, answering
 
+LIBRARY = built_in_library()
 READINGS = {
     "a reading corner with two armchairs": ("living", {"armchair": 2}),
     "a cosy bedroom with a double bed, two night stands and a lamp on each night stand": (
@@ -105,13 +107,13 @@ def test_as_many_are_asked_for_as_people_mean(prompt: str, counts: dict[str, int
     ],
 )
 def test_rooms_do_without_what_they_are_to_do_without(prompt: str, absent: set[str]) -> None:
-    made = compose_room(prompt, built_in_library())
+    made = compose_room(prompt, LIBRARY)
     assert set(made.request.excluded) == absent
     assert not absent & {o.category for o in made.scene.objects}
 
 
 def test_tables_are_large_enough_for_their_seats() -> None:
-    made = compose_room("a table with eight chairs around it", built_in_library())
+    made = compose_room("a table with eight chairs around it", LIBRARY)
     table = next(o for o in made.scene.objects if o.category == "table")
     chairs = [o for o in made.scene.objects if o.category == "chair"]
     assert len(chairs) == 8
@@ -122,7 +124,7 @@ def test_tables_are_large_enough_for_their_seats() -> None:
 
 
 def test_a_television_stays_at_its_wall_in_a_large_room() -> None:
-    made = compose_room("a huge living room with a sofa facing a television on a tv stand", built_in_library())
+    made = compose_room("a huge living room with a sofa facing a television on a tv stand", LIBRARY)
     frame = RoomFrame.of(made.scene)
     stand = next(o for o in made.scene.objects if o.category == "tv stand")
     assert not made.notes
@@ -141,7 +143,7 @@ def test_any_text_is_read_without_complaint(text: str) -> None:
 
 @pytest.mark.parametrize("prompt", [p for p in READINGS if READINGS[p][1]])
 def test_rooms_hold_what_was_asked_for(prompt: str) -> None:
-    room = compose_room(prompt, built_in_library())
+    room = compose_room(prompt, LIBRARY)
     check_scene(room.scene)
     counts = Counter(o.category for o in room.scene.objects)
     for name, wanted in READINGS[prompt][1].items():
@@ -150,15 +152,13 @@ def test_rooms_hold_what_was_asked_for(prompt: str) -> None:
 
 def test_the_same_words_give_the_same_room_and_another_seed_another() -> None:
     prompt = "a bedroom with a bed and a wardrobe"
-    first, again, other = (compose_room(prompt, built_in_library(), seed) for seed in (0, 0, 1))
+    first, again, other = (compose_room(prompt, LIBRARY, seed) for seed in (0, 0, 1))
     assert first.scene == again.scene
     assert first.scene != other.scene
 
 
 def test_beds_side_by_side_lie_the_same_way_at_one_wall() -> None:
-    scene = compose_room(
-        "a twin bedroom with two beds, each with a night stand, and a wardrobe", built_in_library()
-    ).scene
+    scene = compose_room("a twin bedroom with two beds, each with a night stand, and a wardrobe", LIBRARY).scene
     first, second = (o for o in scene.objects if o.category == "bed")
     assert abs(np.sin(first.pose.yaw_rad - second.pose.yaw_rad)) < 0.05
     assert np.cos(first.pose.yaw_rad - second.pose.yaw_rad) > 0.9
@@ -167,7 +167,7 @@ def test_beds_side_by_side_lie_the_same_way_at_one_wall() -> None:
 
 
 def test_lamps_stand_on_their_night_stands() -> None:
-    room = compose_room("a double bed, two night stands and a lamp on each night stand", built_in_library())
+    room = compose_room("a double bed, two night stands and a lamp on each night stand", LIBRARY)
     holders = [s.parent for s in room.scene.supports if s.child.startswith("lamp")]
     assert len(set(holders)) == 2
     assert all(h.startswith("night_stand") for h in holders)
@@ -209,7 +209,7 @@ def test_relations_are_read(prompt: str) -> None:
 
 @pytest.mark.parametrize("prompt", list(WISHES))
 def test_relations_are_met_or_named(prompt: str) -> None:
-    room = compose_room(prompt, built_in_library())
+    room = compose_room(prompt, LIBRARY)
     check_scene(room.scene)
     frame = RoomFrame.of(room.scene)
     name, wish = WISHES[prompt]
@@ -223,7 +223,7 @@ def test_relations_are_met_or_named(prompt: str) -> None:
 
 def test_what_has_no_place_is_named() -> None:
     wardrobes = (RequestedObject("wardrobe", "wardrobe", 1, (), (Wish("on", ("cup",)),)), RequestedObject("cup", "cup"))
-    room = compose_room("x", built_in_library(), request=RoomRequest("living", wardrobes))
+    room = compose_room("x", LIBRARY, request=RoomRequest("living", wardrobes))
     assert any("wardrobe" in note for note in room.notes)
 
 
@@ -236,15 +236,15 @@ def test_customs_name_known_categories() -> None:
 
 
 def test_rooms_of_a_kind_have_what_they_need() -> None:
-    kitchen = compose_room("a kitchen with a round table", built_in_library())
+    kitchen = compose_room("a kitchen with a round table", LIBRARY)
     assert {"stove", "refrigerator", "kitchen counter"} <= {o.category for o in kitchen.scene.objects}
     assert set(kitchen.added) == {"stove", "refrigerator", "kitchen counter"}
 
 
 def test_a_scene_from_text_is_the_composed_room_with_a_camera() -> None:
-    made = scene_from_text("two armchairs and a round table", built_in_library())
-    composed = compose_room("two armchairs and a round table", built_in_library())
-    assert finish(composed.scene, built_in_library())[0] == made.scene
+    made = scene_from_text("two armchairs and a round table", LIBRARY)
+    composed = compose_room("two armchairs and a round table", LIBRARY)
+    assert finish(composed.scene, LIBRARY)[0] == made.scene
     assert made.scene.camera is not None
     assert {p.texture for p in made.scene.architecture.planes} <= set(made.textures)
     assert Counter(o.category for o in made.scene.objects)["armchair"] == 2
@@ -264,7 +264,7 @@ def test_a_language_model_lists_and_mends() -> None:
     vase = {"do": "insert", "what": "vase", "count": 1, "places": [{"relation": "on", "targets": ["side_table_1"]}]}
     with answering(StubLmm([json.dumps(listed), json.dumps({"edits": [vase]}), json.dumps({"edits": []})])) as stub:
         settings_ = LmmSettings(stub.address, "stub", timeout_s=60.0)
-        made = scene_from_text("a place to talk", built_in_library(), language_model=settings_)
+        made = scene_from_text("a place to talk", LIBRARY, language_model=settings_)
     counts = Counter(o.category for o in made.scene.objects)
     assert (counts["armchair"], counts["side table"], counts["vase"]) == (2, 1, 1)
     assert any(note.startswith("mended by stub") for note in made.notes)
@@ -275,13 +275,13 @@ def test_a_language_model_lists_and_mends() -> None:
 def test_bad_replies_leave_the_room_to_the_grammar(answer: str | int) -> None:
     with answering(StubLmm([answer])) as stub:
         settings_ = LmmSettings(stub.address, "stub", timeout_s=60.0, re_asks=0)
-        made = scene_from_text("a sofa", built_in_library(), language_model=settings_)
+        made = scene_from_text("a sofa", LIBRARY, language_model=settings_)
     assert any(o.category == "sofa" for o in made.scene.objects)
     assert any("was not used" in note for note in made.notes)
 
 
 def test_armchairs_gather_around_a_table() -> None:
-    room = compose_room("two armchairs and a round table", built_in_library()).scene
+    room = compose_room("two armchairs and a round table", LIBRARY).scene
     table = next(o for o in room.objects if o.category == "table")
     for chair in (o for o in room.objects if o.category == "armchair"):
         away = table.pose.position[:2] - chair.pose.position[:2]
@@ -317,7 +317,7 @@ def test_a_bad_image_endpoint_is_one_clear_line(case: str) -> None:
 @pytest.mark.parametrize("prompt", ["", "   ", "x" * 3000], ids=["empty", "blank", "endless"])
 def test_unusable_prompts_are_one_clear_line(prompt: str) -> None:
     with pytest.raises(InputError):
-        scene_from_text(prompt, built_in_library())
+        scene_from_text(prompt, LIBRARY)
 
 
 def test_desks_at_opposite_walls_look_at_each_other() -> None:
@@ -329,13 +329,13 @@ def test_desks_at_opposite_walls_look_at_each_other() -> None:
 
 
 def test_a_round_table_is_as_wide_as_deep() -> None:
-    scene = compose_room("a round coffee table and an armchair", built_in_library()).scene
+    scene = compose_room("a round coffee table and an armchair", LIBRARY).scene
     table = next(o for o in scene.objects if o.category == "coffee table")
     assert max(table.size_m[:2]) < 1.15 * min(table.size_m[:2])
 
 
 def test_night_stands_and_armchairs_are_where_people_put_them() -> None:
-    scene = compose_room("a bedroom with a double bed and two night stands beside the bed", built_in_library()).scene
+    scene = compose_room("a bedroom with a double bed and two night stands beside the bed", LIBRARY).scene
     bed = next(o for o in scene.objects if o.category == "bed")
     sides = [
         (bed.pose.R_world_object.T @ (o.pose.position - bed.pose.position))[1]

@@ -32,7 +32,7 @@ from diorama_core.layout.report import measure
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.render.raycast import MeshCaster
 from diorama_core.scene.room_edits import floor_height
-from diorama_core.scene.types import Camera, Intrinsics, Scene, SceneObject
+from diorama_core.scene.types import Intrinsics, Scene, SceneObject
 from diorama_core.synthesis.artefacts import true_supports
 from diorama_core.synthesis.truth import TruthView, transform
 
@@ -321,7 +321,7 @@ def mean_mask_iou(
     k = intrinsics or scene.camera.intrinsics
     items = [o for o in scene.objects if not o.hidden]
     caster = MeshCaster([(library.mesh(o.shape_id), o.pose.matrix) for o in items])
-    camera = Camera(scene.camera.intrinsics.resize(k.width, k.height), scene.camera.T_world_camera)
+    camera = scene.camera.resize(k.width, k.height)
     seen = caster.buffers(camera).instance
     index = {o.id: number for number, o in enumerate(items)}
     total = 0.0

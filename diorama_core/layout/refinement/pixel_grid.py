@@ -34,7 +34,7 @@ class PixelGrid:
             height: likewise.
             long_side: of the grid.
         """
-        sized = Camera(camera.intrinsics.resize(width, height), camera.T_world_camera)
+        sized = camera.resize(width, height)
         return cls(sized, max(1, round(max(width, height) / long_side)))
 
     @cached_property
