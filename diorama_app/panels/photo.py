@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import base64
-import io
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-import numpy as np
 import viser
-from jaxtyping import UInt8
-from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import GO_COLOUR, UploadField, enable, on_change, on_press, show_if, show_value
@@ -18,6 +13,7 @@ from diorama_app.panels.input_questions import ask_depth
 from diorama_app.panels.photo_bar import photo_bar
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.projects.begin import begin_project, keep_given
+from diorama_app.projects.pictures import encode_picture, jpeg_uri
 from diorama_app.projects.reading_again import upload_again, with_depth
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction import build_job as work
@@ -298,7 +294,8 @@ class PhotoPanel:
         if self._client.view.canvas.is_open:
             return f"<p>{about}</p>"  # the photo itself is on the board
         if self._picture_of is not inputs.photo:
-            self._picture_of, self._picture = inputs.photo, _jpeg_uri(inputs.photo.rgb)
+            jpeg = encode_picture(reduce(inputs.photo.rgb, 480), "JPEG", quality=80)
+            self._picture_of, self._picture = inputs.photo, jpeg_uri(jpeg)
         return (
             f'<img class="photo" alt="{text(_("The photo"))}" src="{self._picture}"'
             f' title="{text(_("Drop another photo here to start another project"))}">'
@@ -339,9 +336,3 @@ def _intrinsics(given: str) -> tuple[float, float, float, float] | None:
         message = _("the camera “{words}” is not four numbers; give fx,fy,cx,cy in pixels").format(words=given[:40])
         raise InputError(message) from error
     return fx, fy, cx, cy
-
-
-def _jpeg_uri(rgb: UInt8[np.ndarray, "h w 3"]) -> str:
-    buffer = io.BytesIO()
-    Image.fromarray(reduce(rgb, 480)).save(buffer, "JPEG", quality=80)
-    return "data:image/jpeg;base64," + base64.b64encode(buffer.getvalue()).decode()

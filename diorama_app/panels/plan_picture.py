@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import threading
 from typing import Any
@@ -12,6 +11,7 @@ import viser
 from jaxtyping import UInt8
 
 from diorama_app.panels.fields import add_hidden_upload
+from diorama_app.projects.pictures import jpeg_uri
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_app.web.html import run_once
@@ -56,8 +56,8 @@ class PicturesBelow:
         about: dict[str, Any] = {"upload": self._uuid, "picture": None}
         if stored is not None:
             jpeg, picture = stored
-            url = "data:image/jpeg;base64," + base64.b64encode(jpeg).decode()
-            about["picture"] = {"url": url, "size": picture.size, "at": picture.at, "metres": picture.metres}
+            place = {"size": picture.size, "at": picture.at, "metres": picture.metres}
+            about["picture"] = {"url": jpeg_uri(jpeg), **place}
         self._teller.content = run_once(f"window.__dioPlanTools.given({json.dumps(about)})")
 
     def place(self, place: Any) -> None:

@@ -9,7 +9,7 @@ from diorama_app.reconstruction.build_job import build, forget_build
 from diorama_app.session.client import Client
 from diorama_app.session.recovery import Unsaved
 from diorama_app.strings import _
-from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_app.web.html import LiveHtml, button, text
 from diorama_core.project.storage import Project
 
 
@@ -18,7 +18,7 @@ class UnsavedChanges:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._html = LiveHtml(gui, self._act)
+        self._html = LiveHtml(gui, lambda action: client.post(lambda: self._do(action.do)))
         self._of: Project | None = None
         self._found: Unsaved | None = None
 
@@ -65,9 +65,6 @@ class UnsavedChanges:
             + button(_("Not now"), "no build", title=_("Build it later with “Build scene”"))
             + "</div></div>"
         )
-
-    def _act(self, action: Action) -> None:
-        self._client.post(lambda: self._do(action.do))
 
     def _do(self, what: str) -> None:
         session, unsaved = self._client.session, self._found
