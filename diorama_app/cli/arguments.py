@@ -51,13 +51,7 @@ def print_note(note: str) -> None:
 
 
 def need(words: str, extra: str, *modules: str) -> None:
-    """Refuse a command whose optional libraries are missing.
-
-    Args:
-        words: the command.
-        extra: that has them.
-        modules: of the libraries.
-    """
+    """Refuse a command whose optional libraries, which an extra has, are missing."""
     for module in modules:
         if find_spec(module) is None:
             raise UnavailableError(f"'{words}' needs {module}, which is not installed: pip install 'diorama[{extra}]'")

@@ -176,12 +176,7 @@ def _folders(names: str) -> tuple[Path, ...]:
 
 
 def changes(folders: Sequence[Path], pause_s: float = 0.3) -> Iterator[None]:
-    """An endless iterator: one item at once, and one whenever a file of the folders is written, added or deleted.
-
-    Args:
-        folders: watched with all folders in them.
-        pause_s: between two looks.
-    """
+    """An endless iterator: one item at once, and one whenever a file in the folders is written, added or deleted."""
     before = None
     while True:
         files = (path for folder in folders for path in folder.rglob("*") if path.suffix != ".pyc" and path.is_file())

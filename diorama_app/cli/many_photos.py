@@ -152,11 +152,6 @@ def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
 def build_sphere(a: argparse.Namespace, files: PhotoFiles, options: BuildOptions) -> None:
     """Build one project of the 360 degree photo `a.image`.
 
-    Args:
-        a: the command's arguments.
-        files: the photo and what is known of it.
-        options: of the build.
-
     Raises:
         InputError: the photo or something given with it cannot be used.
     """

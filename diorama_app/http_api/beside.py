@@ -46,12 +46,7 @@ class NotedServer(BaseModel):
 
 @contextlib.contextmanager
 def api_beside(running: Running, token: str | None) -> Iterator[str]:
-    """Answer other programs while the editor runs; gives the address.
-
-    Args:
-        running: the editor.
-        token: the page's, which requests must bring, too; None for none.
-    """
+    """Answer other programs while the editor runs, where they bring the page's token, if any; gives the address."""
     opened = OpenProjects(lambda: running)
     listening = listen(HOST, 0)
     app = create_app(None, Visitors(HOST, token), opened)

@@ -162,13 +162,7 @@ def list_formats() -> list[FormatAnswer]:
 
 
 def create_app(queue: JobQueue | None, visitors: Visitors, opened: OpenProjects | None = None) -> FastAPI:
-    """The application.
-
-    Args:
-        queue: builds; None where photos are built in the editor alone.
-        visitors: who may ask.
-        opened: projects that are open in the editor of this process; None where none can be.
-    """
+    """The application: builds, where there is a queue, and projects, where there is an editor in this process."""
     # No pages with documentation: those that FastAPI offers load their scripts from other servers.
     app = FastAPI(title="Diorama", version="1", description=ABOUT, docs_url=None, redoc_url=None)
     described = app.openapi

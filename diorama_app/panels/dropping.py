@@ -40,7 +40,7 @@ class DroppedFiles:
             self._act(name, content, reading)
 
         size = None if inputs is None else (inputs.photo.width, inputs.photo.height)
-        client.session.reader.recognise(content, name, size, client.id, client.post, handle)
+        client.session.reader.recognise(content, name, size, client, handle)
 
     def _act(self, name: str, content: bytes, reading: Reading) -> None:
         client = self._client
@@ -62,12 +62,6 @@ class DroppedFiles:
 
 
 def listen_for_drops(gui: viser.GuiApi, client: Client, take: Take) -> None:
-    """Let the page send what is dropped. Call it where the panel is always there.
-
-    Args:
-        gui: the page.
-        client: the owner.
-        take: takes name and content.
-    """
+    """Let the page send what is dropped. Call it where the panel is always there."""
     uuid = add_hidden_upload(gui, client, _("Dropped files"), take)
     gui.add_html(f'<i id="dio-drop-to" data-upload="{text(uuid)}"></i>')

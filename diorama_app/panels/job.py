@@ -70,12 +70,7 @@ class JobStrip:
 
 
 def time_left(status: JobStatus, now: float) -> str:
-    """In words, by what was done so far; empty while nothing can be said.
-
-    Args:
-        status: of the running job.
-        now: on the clock of `JobStatus.started_at` (s).
-    """
+    """In words, by what was done so far at `now` (s, monotonic); empty while nothing can be said."""
     spent = now - status.started_at
     if status.cancelling or not MIN_SHARE <= status.fraction < 1.0 or spent < MIN_S:
         return ""

@@ -34,13 +34,7 @@ class Toasts:
         self._show(f'<div class="dio-toast"><span>{text(_(message))}</span>{again}</div>')
 
     def offer(self, message: str, label: str, do: Callable[[], None]) -> None:
-        """Show a message with a button that does something; it stays longer than others.
-
-        Args:
-            message: for the person.
-            label: of the button.
-            do: called on the click.
-        """
+        """Show a message with a button that does something; it stays longer than others."""
         self._offered = do
         self._client.to_say = None  # the line of the step itself comes later, and would take the offer's place
         action = button(text(label), "offered")

@@ -95,12 +95,7 @@ class Tabs:
     """The tabs of one page."""
 
     def __init__(self, gui: viser.GuiApi, tabs: Sequence[str]) -> None:
-        """Open the tabs that were open here the last time, and note which are from now on.
-
-        Args:
-            gui: the page.
-            tabs: names of all tabs, from left to right.
-        """
+        """Open the tabs, named from left to right, that were open the last time, and note which are from now on."""
         gui.add_html(run_once(_KEEPER % (json.dumps(list(map(_, tabs))), json.dumps(STORED_AS), TRIES)))
         self._opener = PageScript(gui)
 

@@ -125,7 +125,7 @@ class PhotoPanel:
             check_all_round(upload)
             self.begin(replace(upload, sphere=True))
 
-        self._session.reader.read(upload, client.id, client.post, finish, ask)
+        self._session.reader.read(upload, client, finish, ask)
         self._announce(upload.name, upload.photo)
 
     def add(self, new: Mapping[Sort, Source]) -> None:
@@ -209,7 +209,7 @@ class PhotoPanel:
                 raise unknown
             ask_depth(client, unknown, lambda chosen: self._read_again(label, new, chosen, turn=turn, bend=bend))
 
-        session.reader.read(upload, client.id, client.post, finish, ask)
+        session.reader.read(upload, client, finish, ask)
 
     def _camera_given(self, value: str) -> None:
         def read() -> None:

@@ -80,9 +80,7 @@ class PhotoStrip:
 
     def _receive(self, name: str, content: bytes) -> None:
         client = self._client
-        client.session.reader.read(
-            Upload(content, name), client.id, client.post, lambda read: take_photo(client, name, read.inputs)
-        )
+        client.session.reader.read(Upload(content, name), client, lambda read: take_photo(client, name, read.inputs))
 
     def _act(self, action: Action) -> None:
         def do() -> None:

@@ -43,13 +43,7 @@ class StartPage:
     """Drawn while it is open."""
 
     def __init__(self, gui: viser.GuiApi, client: Client, take_photo: Callable[[str, bytes], None]) -> None:
-        """Put the start page behind a hidden button that the page presses by itself.
-
-        Args:
-            gui: the page.
-            client: the owner.
-            take_photo: begins a project with a photo (its file's name and content).
-        """
+        """Put the start page behind a hidden button that the page presses by itself."""
         self._client = client
         self._open = False
         self._words = ""

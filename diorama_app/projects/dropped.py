@@ -81,12 +81,7 @@ class Dropped:
 
 
 def interpret(content: bytes, name: str, photo_size: tuple[int, int] | None) -> Dropped:
-    """What a file, or a zip archive of several, is.
-
-    Args:
-        content: of the file.
-        name: of the file.
-        photo_size: of the photo that is open, where there is one.
+    """What a file, or a zip archive of several, is; beside an open photo of a size, if any.
 
     Raises:
         InputError: nothing of it is read; says what it is and what to do.

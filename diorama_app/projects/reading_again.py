@@ -64,10 +64,6 @@ def upload_again(
 def with_depth(new: Mapping[Sort, Source], project: Project | None) -> dict[Sort, Source]:
     """New files, of which the confidence of a depth map is beside that map, which may be the project's.
 
-    Args:
-        new: files by their sort.
-        project: of the photo; None before there is one.
-
     Raises:
         InputError: there is confidence, but no depth.
     """
