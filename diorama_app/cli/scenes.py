@@ -148,10 +148,7 @@ def add_picture(commands: Any) -> None:
 
 
 def _picture(a: argparse.Namespace) -> None:
-    import io
-
-    from PIL import Image
-
+    from diorama_app.projects.pictures import encode_picture
     from diorama_core.io.atomic import write_atomically
 
     room = diorama.load(a.project)
@@ -164,9 +161,8 @@ def _picture(a: argparse.Namespace) -> None:
     if kind is None:
         raise InputError(f"{a.output}: pictures are written as .png or .jpg; choose such a name")
     image = _path_traced(room, a) if a.cycles else diorama.render(room, view=a.view, size=a.size)
-    buffer = io.BytesIO()
-    Image.fromarray(image).save(buffer, kind, compress_level=2)  # PNG: a sixth larger in a quarter of the time
-    write_atomically(a.output, buffer.getvalue(), error=InputError)
+    content = encode_picture(image, kind, compress_level=2)  # PNG: a sixth larger in a quarter of the time
+    write_atomically(a.output, content, error=InputError)
     print(f"{a.output}: {image.shape[1]}x{image.shape[0]}")
 
 
