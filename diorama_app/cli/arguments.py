@@ -22,16 +22,17 @@ WITHOUT_PHOTO = "orbit:35"
 PROFILES = ("auto", "embedded", "foundation")
 
 
-def command(commands: Any, name: str, run: Any, summary: str, example: str) -> argparse.ArgumentParser:
+def command(commands: Any, name: str, run: Any, example: str, summary: str = "") -> argparse.ArgumentParser:
     """A subcommand that runs `run`, with a summary and an example.
 
     Args:
         commands: the parser's subcommands.
         name: as it is typed.
         run: takes the parsed arguments.
-        summary: one line.
         example: of its use.
+        summary: one line; what `run` says of itself when empty.
     """
+    summary = summary or run.__doc__
     parser: argparse.ArgumentParser = commands.add_parser(
         name,
         help=summary,
