@@ -9,10 +9,9 @@ import viser
 
 from diorama_app.commands.import_model import import_model
 from diorama_app.panels.fields import Take, add_hidden_upload
-from diorama_app.panels.input_questions import ask_which
+from diorama_app.panels.messages import ask_which
 from diorama_app.panels.photo import PhotoPanel
-from diorama_app.projects.dropped import Dropped, Reading
-from diorama_app.projects.dropped_files import files_of, sources_of, upload_of
+from diorama_app.projects.dropped import Dropped, Reading, files_of, sources_of, upload_of
 from diorama_app.reconstruction.dropped_photos import begin_each, build_one_room
 from diorama_app.reconstruction.opening_job import open_file, open_packed
 from diorama_app.session.client import Client

@@ -9,7 +9,7 @@ import viser
 
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import GO_COLOUR, UploadField, enable, on_change, on_press, show_if, show_value
-from diorama_app.panels.input_questions import ask_depth
+from diorama_app.panels.messages import ask_depth
 from diorama_app.panels.photo_bar import photo_bar
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.projects.begin import begin_project, keep_given

@@ -15,7 +15,7 @@ import viser
 from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.preparation import Preparer
 from diorama_app.session.redraws import Redraws
-from diorama_app.session.textures import Textures
+from diorama_app.session.shared_document import Textures
 from diorama_app.session.ui_thread import UiThread
 from diorama_app.strings import N_, _
 from diorama_app.viewport.camera import DEFAULT_FOV_RAD, room_view
