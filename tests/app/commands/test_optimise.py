@@ -13,6 +13,7 @@ from diorama_app.session.layout_run import LayoutRun
 from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
+from tests.app.people import settle
 
 
 class Curves:
@@ -46,8 +47,7 @@ def test_curves_are_drawn_less_often_than_the_objects(session, client, monkeypat
 
 def _run(session, *given, **more) -> LayoutRun:
     run = optimise.optimise(*given, **more)
-    assert session.jobs.wait(60.0)
-    assert session.ui_thread.wait()
+    settle(session)
     return run
 
 
