@@ -22,16 +22,17 @@ WITHOUT_PHOTO = "orbit:35"
 PROFILES = ("auto", "embedded", "foundation")
 
 
-def command(commands: Any, name: str, run: Any, summary: str, example: str) -> argparse.ArgumentParser:
+def command(commands: Any, name: str, run: Any, example: str, summary: str = "") -> argparse.ArgumentParser:
     """A subcommand that runs `run`, with a summary and an example.
 
     Args:
         commands: the parser's subcommands.
         name: as it is typed.
         run: takes the parsed arguments.
-        summary: one line.
         example: of its use.
+        summary: one line; what `run` says of itself when empty.
     """
+    summary = summary or run.__doc__
     parser: argparse.ArgumentParser = commands.add_parser(
         name,
         help=summary,
@@ -51,13 +52,7 @@ def print_note(note: str) -> None:
 
 
 def need(words: str, extra: str, *modules: str) -> None:
-    """Refuse a command whose optional libraries are missing.
-
-    Args:
-        words: the command.
-        extra: that has them.
-        modules: of the libraries.
-    """
+    """Refuse a command whose optional libraries, which an extra has, are missing."""
     for module in modules:
         if find_spec(module) is None:
             raise UnavailableError(f"'{words}' needs {module}, which is not installed: pip install 'diorama[{extra}]'")

@@ -42,7 +42,7 @@ def add_bench(commands: Any) -> None:
     runs = {"layout": _bench_layout, "speed": _bench_speed, "rooms": _bench_survey, "system": _bench_system}
     runs["text"] = _bench_text
     for name, scenes, summary in TABLES:
-        one = command(tables, name, runs.get(name, _bench_rooms), summary, f"diorama bench {name} --scenes {scenes}")
+        one = command(tables, name, runs.get(name, _bench_rooms), f"diorama bench {name} --scenes {scenes}", summary)
         one.add_argument("--scenes", type=int, default=scenes, metavar="N", help="rooms (default: %(default)s)")
         one.add_argument("--seed", type=int, default=0, metavar="S", help="seed of the rooms (default: %(default)s)")
         one.add_argument("--json", type=Path, metavar="FILE", help="write the results as JSON too")
@@ -87,7 +87,7 @@ def add_bench(commands: Any) -> None:
 
 def _add_recognition(tables: Any) -> None:
     example = "diorama bench recognition annotations.json --photos pictures"
-    one = command(tables, "recognition", _bench_recognition, "What detectors find in annotated photos.", example)
+    one = command(tables, "recognition", _bench_recognition, example)
     one.add_argument("annotations", type=Path, metavar="ANNOTATIONS", help="boxes and kinds (JSON)")
     one.add_argument("--photos", type=Path, required=True, metavar="DIR", help="pictures named by the annotations' ids")
     one.add_argument("--json", type=Path, metavar="FILE", help="write the tables and every photo as JSON too")
@@ -95,6 +95,8 @@ def _add_recognition(tables: Any) -> None:
 
 
 def _bench_recognition(a: argparse.Namespace) -> None:
+    """What detectors find in annotated photos."""
+
     from diorama_core.evaluation.benchmarks import recognition
     from diorama_core.pipeline.presets import clickers, detection_routes, namers
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def add_photos(tables: Any) -> None:
     """Declare `diorama bench photos`."""
     example = "diorama bench photos annotations.json --photos pictures"
-    one = command(tables, "photos", _bench_photos, "Photos against what a person annotated in them.", example)
+    one = command(tables, "photos", _bench_photos, example)
     _add_sources(one)
     one.add_argument(
         "--perturbed",
@@ -45,7 +45,7 @@ def add_questions_bench(tables: Any) -> None:
     """Declare `diorama bench questions`."""
     example = "diorama bench questions annotations.json --photos pictures"
     text = "What answers to a review's questions are worth, by annotated photos or rendered rooms; how sure builds are."
-    one = command(tables, "questions", _bench_questions, text, example)
+    one = command(tables, "questions", _bench_questions, example, text)
     _add_sources(one, needed=False)
     one.add_argument("--scenes", type=int, default=0, metavar="N", help="review N rendered rooms in place of photos")
     one.add_argument("--seed", type=int, default=0, metavar="N", help="of the series of rooms (default: %(default)s)")
@@ -96,6 +96,8 @@ def _bench_questions(a: argparse.Namespace) -> None:
 
 
 def _bench_photos(a: argparse.Namespace) -> None:
+    """Photos against what a person annotated in them."""
+
     from diorama_core.evaluation.benchmarks import photos as photos_bench
     from diorama_core.evaluation.benchmarks.photo_build import write_picture
     from diorama_core.library.catalogue import built_in_library

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from diorama_app.cli.arguments import (
     PROFILES,
@@ -21,15 +21,10 @@ from diorama_app.cli.arguments import (
 from diorama_app.projects.options import POSES, ROOMS, SYSTEMS, BuildOptions, PhotoFiles, build_files
 from diorama_core.errors import InputError, SphericalPhotoError
 
-if TYPE_CHECKING:
-    pass
-
 
 def add_build(commands: Any) -> None:
     """Declare `diorama build`."""
-    p = command(
-        commands, "build", _build, "Build a scene from a photo.", "diorama build room.jpg --boxes boxes.json -o my-room"
-    )
+    p = command(commands, "build", _build, "diorama build room.jpg --boxes boxes.json -o my-room")
     p.add_argument("image", type=Path, metavar="IMAGE|DIR", help="the photo, or a folder of photos with their files")
     p.add_argument(
         "-o",
@@ -163,6 +158,8 @@ def _add_methods(p: argparse.ArgumentParser) -> None:
 
 
 def _build(a: argparse.Namespace) -> None:
+    """Build a scene from a photo."""
+
     from diorama_app.cli.many_photos import build_folder
 
     options = BuildOptions(

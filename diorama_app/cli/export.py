@@ -21,13 +21,7 @@ if TYPE_CHECKING:
 def add_export(commands: Any) -> None:
     """Declare `diorama export`."""
 
-    p = command(
-        commands,
-        "export",
-        _export,
-        "Write a project's scene for other tools.",
-        "diorama export my-room --format glb -o room.glb",
-    )
+    p = command(commands, "export", _export, "diorama export my-room --format glb -o room.glb")
     p.add_argument("project", type=Path, metavar="PROJECT")
     p.add_argument("--format", choices=tuple(EXPORT_FORMATS), required=True, help="docs/export.md says what each keeps")
     p.add_argument("-o", "--output", type=Path, metavar="FILE", help="(default: in the project's exports folder)")
@@ -102,6 +96,7 @@ def add_export(commands: Any) -> None:
 
 
 def _export(a: argparse.Namespace) -> None:
+    """Write a project's scene for other tools."""
     room = diorama.load(a.project)
     options = _options(a, room)
     assert room.project is not None

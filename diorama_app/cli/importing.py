@@ -20,13 +20,7 @@ if TYPE_CHECKING:
 
 def add_import(commands: Any) -> None:
     """Declare `diorama import`."""
-    p = command(
-        commands,
-        "import",
-        _import,
-        "Make a project from a file: one that Diorama exported comes back as it was.",
-        "diorama import room.glb -o my-room",
-    )
+    p = command(commands, "import", _import, "diorama import room.glb -o my-room")
     p.add_argument(
         "file",
         type=Path,
@@ -47,6 +41,8 @@ def add_import(commands: Any) -> None:
 
 
 def _import(a: argparse.Namespace) -> None:
+    """Make a project from a file: one that Diorama exported comes back as it was."""
+
     from diorama_core.project.storage import Project
 
     if (a.output / "scene.json").exists():

@@ -26,9 +26,7 @@ def add_library(commands: Any) -> None:
     """Declare `diorama library`."""
     p: argparse.ArgumentParser = commands.add_parser("library", help="Manage the shape libraries.")
     actions = p.add_subparsers(dest="action", required=True, metavar="build|add|info|list|search|sheet|show")
-    build = command(
-        actions, "build", _library_build, "Prepare a library's shapes once.", "diorama library build --library mine"
-    )
+    build = command(actions, "build", _library_build, "diorama library build --library mine")
     _add_library_name(build)
     build.add_argument("--parts", action="store_true", help="also the convex parts that keep shapes apart (minutes)")
     build.add_argument("--views", action="store_true", help="also the image features for retrieval and image search")
@@ -36,37 +34,23 @@ def add_library(commands: Any) -> None:
     build.add_argument("--workers", type=int, metavar="N", help="processes (default: all cores)")
     build.add_argument("--ray", metavar="ADDRESS", help="work on a Ray cluster: auto, HOST:PORT, or local to start one")
     add_adding(actions)
-    lists = command(actions, "list", _library_list, "List the shapes.", "diorama library list --category chair")
+    lists = command(actions, "list", _library_list, "diorama library list --category chair")
     lists.add_argument("--category", help="only this category (synonyms are understood)")
     _add_library_name(lists)
     lists.add_argument("--json", action="store_true")
-    search = command(
-        actions,
-        "search",
-        _library_search,
-        "Find shapes by words, a picture, or both.",
-        'diorama library search "wooden armchair"',
-    )
+    search = command(actions, "search", _library_search, 'diorama library search "wooden armchair"')
     search.add_argument("text", metavar="TEXT", nargs="?", default="", help="what to find; optional with --image")
     search.add_argument("--image", type=Path, metavar="FILE", help="a picture of the object, best cut out")
     _add_library_name(search)
     search.add_argument("-k", type=int, default=10, help="how many (default: %(default)s)")
     search.add_argument("--json", action="store_true")
-    sheet = command(
-        actions,
-        "sheet",
-        _library_sheet,
-        "Draw all shapes, or those of one category, on one page.",
-        "diorama library sheet --category lamp -o lamps.png",
-    )
+    sheet = command(actions, "sheet", _library_sheet, "diorama library sheet --category lamp -o lamps.png")
     sheet.add_argument("-o", "--output", type=Path, default=Path("library.png"), help="PNG (default: %(default)s)")
     sheet.add_argument("--category", help="only this category (synonyms are understood)")
     _add_library_name(sheet)
     sheet.add_argument("--size", type=int, default=240, help="side of one picture in pixels (default: %(default)s)")
     sheet.add_argument("--columns", type=int, default=6, help="pictures side by side (default: %(default)s)")
-    show = command(
-        actions, "show", _library_show, "Draw one shape from four sides.", "diorama library show floor-lamp-arc --watch"
-    )
+    show = command(actions, "show", _library_show, "diorama library show floor-lamp-arc --watch")
     show.add_argument("id", metavar="ID")
     show.add_argument("-o", "--output", type=Path, metavar="FILE", help="PNG (default: ID.png)")
     show.add_argument("--watch", action="store_true", help="draw it again whenever its design or its library changes")
@@ -80,6 +64,8 @@ def _add_library_name(parser: argparse.ArgumentParser) -> None:
 
 
 def _library_build(a: argparse.Namespace) -> None:
+    """Prepare a library's shapes once."""
+
     from diorama_core.pipeline.prepare import prepare_library
     from diorama_core.workers import workers
 
@@ -99,6 +85,8 @@ def _library_build(a: argparse.Namespace) -> None:
 
 
 def _library_list(a: argparse.Namespace) -> None:
+    """List the shapes."""
+
     from diorama_core.library.taxonomy import resolve
 
     library = diorama.open_library(a.library)
@@ -107,6 +95,8 @@ def _library_list(a: argparse.Namespace) -> None:
 
 
 def _library_search(a: argparse.Namespace) -> None:
+    """Find shapes by words, a picture, or both."""
+
     from diorama_core.library.search import find
 
     if a.k < 1:
@@ -131,6 +121,8 @@ def _library_search(a: argparse.Namespace) -> None:
 
 
 def _library_sheet(a: argparse.Namespace) -> None:
+    """Draw all shapes, or those of one category, on one page."""
+
     from diorama_core.library.taxonomy import resolve
     from diorama_core.render.thumbnails import shape_sheet
 
@@ -152,6 +144,7 @@ def _library_sheet(a: argparse.Namespace) -> None:
 
 
 def _library_show(a: argparse.Namespace) -> None:
+    """Draw one shape from four sides."""
     output = a.output or Path(f"{a.id}.png")
     _check_picture(output)
     if a.watch:
@@ -176,12 +169,7 @@ def _folders(names: str) -> tuple[Path, ...]:
 
 
 def changes(folders: Sequence[Path], pause_s: float = 0.3) -> Iterator[None]:
-    """An endless iterator: one item at once, and one whenever a file of the folders is written, added or deleted.
-
-    Args:
-        folders: watched with all folders in them.
-        pause_s: between two looks.
-    """
+    """An endless iterator: one item at once, and one whenever a file in the folders is written, added or deleted."""
     before = None
     while True:
         files = (path for folder in folders for path in folder.rglob("*") if path.suffix != ".pyc" and path.is_file())

@@ -31,13 +31,7 @@ SHOWN = 20
 
 def add_adding(actions: Any) -> None:
     """Declare `diorama library add` and `diorama library info`."""
-    p = command(
-        actions,
-        "add",
-        _add,
-        "Take a folder of models into a library: GLB, glTF, OBJ with MTL, PLY, STL, DAE, 3MF, 3DS, zip, USD, FBX.",
-        "diorama library add ~/models --name mine",
-    )
+    p = command(actions, "add", _add, "diorama library add ~/models --name mine")
     p.add_argument("folder", type=Path, metavar="DIR", help="searched with all folders in it; links are not followed")
     p.add_argument("--name", metavar="NAME", help="the library to add to (default: the folder's own name)")
     p.add_argument("--up", type=axis, metavar="AXIS", help="axis of the files that points up: x, y, z, or --up=-z")
@@ -50,9 +44,7 @@ def add_adding(actions: Any) -> None:
     p.add_argument("--workers", type=int, metavar="N", help="processes (default: all cores)")
     p.add_argument("--json", action="store_true", help="print the report as JSON")
     p.epilog = f"{p.epilog}\n\nWhat was guessed is shown by 'diorama library info ID --library NAME'."
-    info = command(
-        actions, "info", _info, "Show the properties of a shape.", "diorama library info chair --library mine"
-    )
+    info = command(actions, "info", _info, "diorama library info chair --library mine")
     info.add_argument("id", metavar="ID")
     info.add_argument("--library", default="built-in", metavar="NAME", help="(default: %(default)s)")
     info.add_argument("--json", action="store_true")
@@ -67,6 +59,8 @@ def axis(text: str) -> str:
 
 
 def _add(a: argparse.Namespace) -> None:
+    """Take a folder of models into a library: GLB, glTF, OBJ with MTL, PLY, STL, DAE, 3MF, 3DS, zip, USD, FBX."""
+
     from diorama_core.library.datasets import as_sources, dataset_named, recognise
     from diorama_core.library.ingest.adding import add_models
     from diorama_core.library.ingest.finding import model_files, read_table, sources
@@ -199,6 +193,8 @@ def _lines_by_note(report: Added) -> list[str]:
 
 
 def _info(a: argparse.Namespace) -> None:
+    """Show the properties of a shape."""
+
     from diorama_core.library.record import shape_to_json
 
     shape = diorama.open_library(a.library).shape(a.id)

@@ -127,12 +127,12 @@ def _browser() -> Finding:
 
 def add_doctor(commands: Any) -> None:
     """Declare `diorama doctor`."""
-    p = command(commands, "doctor", _doctor, "Check that this machine can run Diorama.", "diorama doctor")
+    p = command(commands, "doctor", _doctor, "diorama doctor")
     p.add_argument("--json", action="store_true", help="print the findings as JSON")
 
 
 def _doctor(a: argparse.Namespace) -> int:
-    from diorama_app.cli.machine import examine
+    """Check that this machine can run Diorama."""
 
     findings = examine()
     if a.json:

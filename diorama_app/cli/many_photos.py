@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from diorama_app.projects.folder_build import PhotoResult
-    from diorama_app.projects.options import BuildOptions
+    from diorama_app.projects.options import BuildOptions, PhotoFiles
+    from diorama_app.projects.posed_build import PosedBuild
 
 REPORT = "report.html"
 
@@ -79,23 +80,22 @@ def _build_photos_of(folder: Path, output: Path, a: argparse.Namespace, options:
 
 def check_options_of_one_photo(a: argparse.Namespace) -> None:
     """Raise `InputError` where an option is given that says something of one photo."""
-    single = {"--depth": a.depth, "--intrinsics": a.intrinsics, "--boxes": a.boxes, "--masks": a.masks}
-    if a.half_turn:
-        raise InputError("--half-turn is for one photo; build upside-down photos of a folder one by one")
-    if a.flat:
-        raise InputError("--flat is for one photo; build photos of a folder that look like panoramas one by one")
-    if a.distortion:
-        raise InputError("--distortion is for one photo; straighten the photos of a folder before")
-    named = next((name for name, value in single.items() if value is not None), None)
-    if named is not None:
-        kind = named.removeprefix("--").replace("intrinsics", "camera")
-        raise InputError(f"{named} is for one photo; of a folder, put a file NAME.{kind}... beside each photo NAME")
-    if a.fov is not None:
-        raise InputError("--fov is for one photo; of a folder, put a file NAME.camera.json beside each photo NAME")
-    if a.camera_height is not None:
-        raise InputError("--camera-height is for one photo; set the scale of others in the editor")
-    if a.arrangements != 1:
-        raise InputError("--arrangements is for one photo; leave it out for a folder")
+    beside = "of a folder, put a file NAME.{}... beside each photo NAME"
+    options = {
+        "--half-turn": (a.half_turn, "build upside-down photos of a folder one by one"),
+        "--flat": (a.flat, "build photos of a folder that look like panoramas one by one"),
+        "--distortion": (a.distortion, "straighten the photos of a folder before"),
+        "--depth": (a.depth, beside.format("depth")),
+        "--intrinsics": (a.intrinsics, beside.format("camera")),
+        "--boxes": (a.boxes, beside.format("boxes")),
+        "--masks": (a.masks, beside.format("masks")),
+        "--fov": (a.fov, "of a folder, put a file NAME.camera.json beside each photo NAME"),
+        "--camera-height": (a.camera_height, "set the scale of others in the editor"),
+        "--arrangements": (a.arrangements != 1, "leave it out for a folder"),
+    }
+    for option, (given, advice) in options.items():
+        if given:
+            raise InputError(f"{option} is for one photo; {advice}")
 
 
 def _as_json(result: PhotoResult) -> dict[str, object]:
@@ -113,10 +113,6 @@ def _as_json(result: PhotoResult) -> dict[str, object]:
 FIND = "find"
 """Instead of a path: the photos themselves tell where they were taken."""
 
-if TYPE_CHECKING:
-    from diorama_app.projects.options import BuildOptions, PhotoFiles
-    from diorama_app.projects.posed_build import PosedBuild
-
 
 def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
     """Build one project of the photos in the folder `a.image`.
@@ -125,7 +121,6 @@ def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
         InputError: no folder is named, or a photo or the poses cannot be used.
         UnavailableError: cameras are to be found and pycolmap is not installed.
     """
-    from diorama_app.cli.many_photos import check_options_of_one_photo
     from diorama_app.projects.folder_photos import photos_of
     from diorama_app.projects.posed_build import build_posed_photos, poses_from_photos
     from diorama_core.multiview.posed_photos import read_poses
@@ -151,11 +146,6 @@ def build_posed(a: argparse.Namespace, options: BuildOptions) -> None:
 
 def build_sphere(a: argparse.Namespace, files: PhotoFiles, options: BuildOptions) -> None:
     """Build one project of the 360 degree photo `a.image`.
-
-    Args:
-        a: the command's arguments.
-        files: the photo and what is known of it.
-        options: of the build.
 
     Raises:
         InputError: the photo or something given with it cannot be used.

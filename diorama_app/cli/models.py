@@ -21,9 +21,9 @@ def add_models(commands: Any) -> None:
     """Declare `diorama models`."""
     p: argparse.ArgumentParser = commands.add_parser("models", help="Networks that Diorama can use, all optional.")
     actions = p.add_subparsers(dest="action", required=True, metavar="list|pull|verify|check|path")
-    lists = command(actions, "list", _list, "List the networks and which are installed.", "diorama models list")
+    lists = command(actions, "list", _list, "diorama models list")
     lists.add_argument("--json", action="store_true")
-    pulls = command(actions, "pull", _pull, "Download networks.", "diorama models pull tiny")
+    pulls = command(actions, "pull", _pull, "diorama models pull tiny")
     pulls.add_argument(
         "what",
         nargs="*",
@@ -35,20 +35,16 @@ def add_models(commands: Any) -> None:
     pulls.add_argument(
         "--from", dest="source", type=Path, metavar="FOLDER", help="use files downloaded elsewhere; works offline"
     )
-    verify = command(actions, "verify", _verify, "Verify the checksums of installed networks.", "diorama models verify")
+    verify = command(actions, "verify", _verify, "diorama models verify")
     verify.add_argument("--json", action="store_true")
-    checks = command(
-        actions,
-        "check",
-        _check,
-        "Let every installed network look at a photo it should do well.",
-        "diorama models check",
-    )
+    checks = command(actions, "check", _check, "diorama models check")
     checks.add_argument("--json", action="store_true")
-    command(actions, "path", _path, "Print the folder of the networks.", "diorama models path")
+    command(actions, "path", _path, "diorama models path")
 
 
 def _list(a: argparse.Namespace) -> None:
+    """List the networks and which are installed."""
+
     from diorama_core.models.manifest import NETWORKS
     from diorama_core.models.store import ModelStore
 
@@ -80,6 +76,8 @@ def _list(a: argparse.Namespace) -> None:
 
 
 def _pull(a: argparse.Namespace) -> None:
+    """Download networks."""
+
     from diorama_core.models.pull import pull
     from diorama_core.models.store import ModelStore
 
@@ -145,6 +143,8 @@ def _asker(yes: bool) -> Any:
 
 
 def _verify(a: argparse.Namespace) -> None:
+    """Verify the checksums of installed networks."""
+
     from diorama_core.models.manifest import NETWORKS
     from diorama_core.models.store import ModelStore
 
@@ -165,6 +165,8 @@ def _verify(a: argparse.Namespace) -> None:
 
 
 def _check(a: argparse.Namespace) -> None:
+    """Let every installed network look at a photo it should do well."""
+
     from diorama_app.projects.example import example_inputs
     from diorama_core.models.store import ModelStore
     from diorama_core.pipeline.network_check import check_networks
@@ -190,6 +192,8 @@ def _check(a: argparse.Namespace) -> None:
 
 
 def _path(a: argparse.Namespace) -> None:
+    """Print the folder of the networks."""
+
     from diorama_core.models.store import default_folder
 
     print(default_folder())

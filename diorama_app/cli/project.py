@@ -18,26 +18,12 @@ def add_project(commands: Any) -> None:
     """Declare `diorama project`."""
     p: argparse.ArgumentParser = commands.add_parser("project", help="List, copy, join, measure and pack projects.")
     actions = p.add_subparsers(dest="action", required=True, metavar="list|copy|join|rooms|zip|unzip")
-    lists = command(actions, "list", _list, "List the projects, last changed first.", "diorama project list")
-    copy = command(actions, "copy", _copy, "Copy a project beside it.", "diorama project copy my-room")
-    pack = command(
-        actions, "zip", _zip, "Pack a project into one file, to send.", "diorama project zip my-room -o room.diorama"
-    )
-    unpack = command(actions, "unzip", _unzip, "Make a project of a packed one.", "diorama project unzip room.diorama")
-    join = command(
-        actions,
-        "join",
-        _join,
-        "Add another project's room to a home, at a door that both have.",
-        "diorama project join my-home my-kitchen --door door_1 --to door_2",
-    )
-    rooms = command(
-        actions,
-        "rooms",
-        _rooms,
-        "Say how large rooms are, where a wheelchair turns and how wide the ways between doors are.",
-        "diorama project rooms my-home",
-    )
+    lists = command(actions, "list", _list, "diorama project list")
+    copy = command(actions, "copy", _copy, "diorama project copy my-room")
+    pack = command(actions, "zip", _zip, "diorama project zip my-room -o room.diorama")
+    unpack = command(actions, "unzip", _unzip, "diorama project unzip room.diorama")
+    join = command(actions, "join", _join, "diorama project join my-home my-kitchen --door door_1 --to door_2")
+    rooms = command(actions, "rooms", _rooms, "diorama project rooms my-home")
     for one in (copy, join, rooms, pack):
         one.add_argument("project", type=Path, metavar="PROJECT", help="its folder, or its name among the projects")
     join.add_argument("--door", required=True, metavar="ID", help="the door in PROJECT")
@@ -53,6 +39,8 @@ def add_project(commands: Any) -> None:
 
 
 def _list(a: argparse.Namespace) -> None:
+    """List the projects, last changed first."""
+
     from diorama_app.projects.manage import mtime, name_of, recent_projects
 
     folder = projects_folder(a.projects)
@@ -73,6 +61,8 @@ def _list(a: argparse.Namespace) -> None:
 
 
 def _copy(a: argparse.Namespace) -> None:
+    """Copy a project beside it."""
+
     from diorama_app.projects.manage import duplicate_project
 
     folder = _folder(a, a.project)
@@ -80,6 +70,8 @@ def _copy(a: argparse.Namespace) -> None:
 
 
 def _join(a: argparse.Namespace) -> None:
+    """Add another project's room to a home, at a door that both have."""
+
     from diorama_core.editing.homes import join_project
     from diorama_core.project.lock import ProjectLock
     from diorama_core.project.storage import Project
@@ -94,6 +86,8 @@ def _join(a: argparse.Namespace) -> None:
 
 
 def _rooms(a: argparse.Namespace) -> None:
+    """Say how large rooms are, where a wheelchair turns and how wide the ways between doors are."""
+
     from diorama_core.editing.reach import TURNING_M, uses_of
     from diorama_core.project.storage import Project
 
@@ -112,6 +106,8 @@ def _rooms(a: argparse.Namespace) -> None:
 
 
 def _zip(a: argparse.Namespace) -> None:
+    """Pack a project into one file, to send."""
+
     from diorama_app.projects.packing import SUFFIX, pack_project
     from diorama_core.project.storage import Project
 
@@ -122,6 +118,8 @@ def _zip(a: argparse.Namespace) -> None:
 
 
 def _unzip(a: argparse.Namespace) -> None:
+    """Make a project of a packed one."""
+
     from diorama_app.projects.packing import unpack_project
 
     if not a.file.is_file():

@@ -23,13 +23,7 @@ LATER, STOP = "l", "q"
 
 def add_review(commands: Any) -> None:
     """Declare `diorama review`."""
-    p = command(
-        commands,
-        "review",
-        _review,
-        "Answer what the build of a scene is not sure of, the most helpful question first.",
-        "diorama review my-room",
-    )
+    p = command(commands, "review", _review, "diorama review my-room")
     p.add_argument("project", type=Path, metavar="PROJECT")
     p.add_argument(
         "--answer",
@@ -42,6 +36,8 @@ def add_review(commands: Any) -> None:
 
 
 def _review(a: argparse.Namespace) -> None:
+    """Answer what the build of a scene is not sure of, the most helpful question first."""
+
     from diorama_core.project.lock import ProjectLock
     from diorama_core.review.questions import questions
 

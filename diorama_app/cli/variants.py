@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,6 +12,7 @@ import numpy as np
 from PIL import Image
 
 import diorama_core as diorama
+from diorama_app.projects.pictures import encode_picture
 from diorama_core.appearance.surface_finish import with_finish_pictures
 from diorama_core.errors import InputError
 from diorama_core.export import Format
@@ -99,6 +99,4 @@ def _write_sheet(path: Path, pictures: Sequence[np.ndarray]) -> None:
     sheet = Image.new("RGB", (columns * width, -(-len(pictures) // columns) * height), "white")
     for number, picture in enumerate(pictures):
         sheet.paste(Image.fromarray(picture), (number % columns * width, number // columns * height))
-    buffer = io.BytesIO()
-    sheet.save(buffer, "JPEG", quality=85)
-    write_atomically(path, buffer.getvalue(), error=InputError)
+    write_atomically(path, encode_picture(sheet, "JPEG", quality=85), error=InputError)

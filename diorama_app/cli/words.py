@@ -19,13 +19,7 @@ if TYPE_CHECKING:
 
 def add_text(commands: Any) -> None:
     """Declare `diorama text`."""
-    p = command(
-        commands,
-        "text",
-        _text,
-        "Make a scene from a description.",
-        'diorama text "a reading corner with two armchairs" -o my-corner',
-    )
+    p = command(commands, "text", _text, 'diorama text "a reading corner with two armchairs" -o my-corner')
     p.add_argument("prompt", metavar="TEXT", help="description of the room and its furniture")
     p.add_argument("-o", "--output", type=Path, required=True, metavar="PROJECT", help="project folder to write")
     p.add_argument("--profile", choices=PROFILES, default="auto", help="which networks to use (default: %(default)s)")
@@ -36,6 +30,8 @@ def add_text(commands: Any) -> None:
 
 
 def _text(a: argparse.Namespace) -> None:
+    """Make a scene from a description."""
+
     from diorama_app.projects.report import build_report
 
     with progress_bar() as progress:
@@ -61,11 +57,7 @@ def _text(a: argparse.Namespace) -> None:
 def add_edit(commands: Any) -> None:
     """Declare `diorama edit`."""
     p = command(
-        commands,
-        "edit",
-        _edit,
-        "Change a project's scene by words; the edits are shown first.",
-        'diorama edit my-room "make all chairs wooden and put a rug under the table" --yes',
+        commands, "edit", _edit, 'diorama edit my-room "make all chairs wooden and put a rug under the table" --yes'
     )
     p.add_argument("project", type=Path, metavar="PROJECT")
     p.add_argument("command", metavar="TEXT", help="what to change, in plain English")
@@ -74,6 +66,8 @@ def add_edit(commands: Any) -> None:
 
 
 def _edit(a: argparse.Namespace) -> None:
+    """Change a project's scene by words; the edits are shown first."""
+
     from diorama_core.perception.language.client import LmmSettings
     from diorama_core.project.lock import ProjectLock
     from diorama_core.text.editing_by_words import propose_edits

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from functools import partial
+from functools import partial, reduce
 
 import numpy as np
 from jaxtyping import Float
@@ -16,7 +16,7 @@ from diorama_core.editing.support_changes import attach_to_room_floor
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
 from diorama_core.scene.support import descendants
-from diorama_core.scene.types import Finish, MaterialSource, Pose, Scene, SceneObject, Support, yaw_rotation
+from diorama_core.scene.types import Finish, MaterialSource, Scene, SceneObject, Support, yaw_rotation
 
 NUDGE_MERGE = "fields"
 BESIDE_M = 0.08
@@ -93,24 +93,15 @@ def set_colour(client: Client, ids: Iterable[str], colour: tuple[float, float, f
     """Paint objects; None restores the shape's own colours."""
     chosen = tuple(ids)
     label = _("paint {names}") if colour is not None else _("reset the colour of {names}")
-    client.session.edit(
-        label.format(names=names_of(client.session.scene, chosen)),
-        lambda s: _fold(s, chosen, lambda scene, i: edits.recolour(scene, i, colour)),
-        by=client,
-        merge_key=f"{NUDGE_MERGE} colour {' '.join(chosen)}",
-    )
+    merge_key = f"{NUDGE_MERGE} colour {' '.join(chosen)}"
+    _each(client, label, chosen, lambda s, i: edits.recolour(s, i, colour), merge_key)
 
 
 def set_finish(client: Client, ids: Iterable[str], finish: Finish | None) -> None:
     """Set the finish of objects; None restores the shape's own."""
-    chosen = tuple(ids)
-    names = names_of(client.session.scene, chosen)
     label = _("{finish} finish for {names}") if finish is not None else _("reset the finish of {names}")
-    client.session.edit(
-        label.format(finish=_(finish or ""), names=names),
-        lambda s: _fold(s, chosen, lambda scene, i: edits.refinish(scene, i, finish)),
-        by=client,
-    )
+    label = label.replace("{finish}", _(finish or ""))
+    _each(client, label, ids, lambda s, i: edits.refinish(s, i, finish))
 
 
 def set_open(client: Client, object_id: str, open_share: float) -> None:
@@ -132,11 +123,7 @@ def set_material_source(client: Client, ids: Iterable[str], source: MaterialSour
     label = (
         _("materials of {names} from the photo") if source == "photo" else _("materials of {names} from the library")
     )
-    client.session.edit(
-        label.format(names=names),
-        lambda s: _fold(s, chosen, lambda scene, i: edits.set_material_source(scene, i, source)),
-        by=client,
-    )
+    _each(client, label, chosen, lambda s, i: edits.set_material_source(s, i, source))
 
 
 def rename(client: Client, object_id: str, label: str) -> None:
@@ -156,7 +143,13 @@ def set_base_position(client: Client, object_id: str, base: Float[np.ndarray, 3]
     offset = np.asarray(base, dtype=np.float64) - base_position(item)
     if np.abs(offset).max() < 5e-4:
         return
-    _move(client, item, item.pose.move(offset), "at")
+    client.session.edit(
+        _("move {label}").format(label=item.label),
+        lambda s: attach_to_room_floor(edits.move(s, item.id, item.pose.move(offset)), item.id),
+        by=client,
+        merge_key=f"{NUDGE_MERGE} {item.id} at",
+        by_hand=True,
+    )
 
 
 def set_yaw(client: Client, object_id: str, yaw_deg: float) -> None:
@@ -174,16 +167,11 @@ def turn_selected(client: Client, by_deg: float) -> None:
 
 
 def _turn(client: Client, ids: tuple[str, ...], turn_rad: float) -> None:
-    def turn(scene: Scene) -> Scene:
-        for object_id in ids:
-            pose = scene.object(object_id).pose
-            scene = edits.move(
-                scene, object_id, replace(pose, R_world_object=yaw_rotation(turn_rad) @ pose.R_world_object)
-            )
-        return scene
+    def turn(scene: Scene, object_id: str) -> Scene:
+        pose = scene.object(object_id).pose
+        return edits.move(scene, object_id, replace(pose, R_world_object=yaw_rotation(turn_rad) @ pose.R_world_object))
 
-    label = _("turn {names}").format(names=names_of(client.session.scene, ids))
-    client.session.edit(label, turn, by=client, merge_key=f"{NUDGE_MERGE} {' '.join(ids)} yaw", by_hand=True)
+    _each(client, _("turn {names}"), ids, turn, f"{NUDGE_MERGE} {' '.join(ids)} yaw", by_hand=True)
 
 
 def set_size(client: Client, object_id: str, size_m: Float[np.ndarray, 3]) -> None:
@@ -233,7 +221,7 @@ def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = Fal
         client.offer(
             f"{_(why_not)[:1].upper()}{_(why_not)[1:]}",
             _("Put it there anyway"),
-            partial(_attach_anyway, client, object_id, parent_id),
+            partial(attach, client, object_id, parent_id, anyway=True),
         )
         return
     wall = scene.has_plane(parent_id) and scene.plane(parent_id).role != "floor"
@@ -252,10 +240,6 @@ def attach(client: Client, object_id: str, parent_id: str, *, anyway: bool = Fal
         by=client,
         by_hand=True,
     )
-
-
-def _attach_anyway(client: Client, object_id: str, parent_id: str) -> None:
-    attach(client, object_id, parent_id, anyway=True)
 
 
 def detach(client: Client, object_id: str) -> None:
@@ -325,23 +309,16 @@ def supporter_name(scene: Scene, any_id: str) -> str:
     return _(plane.role) if number is None else f"{_(plane.role)} {number}"
 
 
-def _move(client: Client, item: SceneObject, pose: Pose, field: str) -> None:
-    client.session.edit(
-        _("move {label}").format(label=item.label),
-        lambda s: attach_to_room_floor(edits.move(s, item.id, pose), item.id),
-        by=client,
-        merge_key=f"{NUDGE_MERGE} {item.id} {field}",
-        by_hand=True,
-    )
-
-
-def _each(client: Client, label: str, ids: Iterable[str], change: Callable[[Scene, str], Scene]) -> None:
+def _each(
+    client: Client,
+    label: str,
+    ids: Iterable[str],
+    change: Callable[[Scene, str], Scene],
+    merge_key: str | None = None,
+    *,
+    by_hand: bool = False,
+) -> None:
+    """Change objects one after another, as one undo step; the label names them."""
     chosen = tuple(ids)
     label = label.format(names=names_of(client.session.scene, chosen))
-    client.session.edit(label, lambda s: _fold(s, chosen, change), by=client)
-
-
-def _fold(scene: Scene, ids: Iterable[str], change: Callable[[Scene, str], Scene]) -> Scene:
-    for object_id in ids:
-        scene = change(scene, object_id)
-    return scene
+    client.session.edit(label, lambda s: reduce(change, chosen, s), by=client, merge_key=merge_key, by_hand=by_hand)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -47,10 +48,11 @@ def toggle_favourite(client: Client, shape_id: str) -> None:
     client.change_preferences(favourites=rest if shape_id in before else (shape_id, *rest)[:MAX_FAVOURITES])
 
 
-def _remember(client: Client, shape_id: str) -> None:
-    """Remember that a shape was inserted."""
-    rest = (i for i in client.preferences.recent if i != shape_id)
-    client.change_preferences(recent=(shape_id, *rest)[:MAX_RECENT])
+def _insert(client: Client, shape: Shape, new_id: str, change: Callable[[Scene], Scene]) -> None:
+    """Insert a shape as one undo step, select it and remember it."""
+    client.session.edit(_inserting(shape.category), change, by=client, selection=(new_id,))
+    rest = (i for i in client.preferences.recent if i != shape.id)
+    client.change_preferences(recent=(shape.id, *rest)[:MAX_RECENT])
 
 
 def insert_shape(client: Client, shape_id: str) -> None:
@@ -64,8 +66,7 @@ def insert_shape(client: Client, shape_id: str) -> None:
     if parent is not None:
         on_it = _insert_on(client, shape, new_id, parent)
         if on_it is not None:
-            session.edit(_inserting(shape.category), lambda scene: on_it, by=client, selection=(new_id,))
-            _remember(client, shape_id)
+            _insert(client, shape, new_id, lambda scene: on_it)
             return
     room = client.room()
     floor, height = room.architecture.floor, floor_height(room)
@@ -73,8 +74,7 @@ def insert_shape(client: Client, shape_id: str) -> None:
     pose = Pose.upright((x, y, height + shape.size_m[2] / 2), facing(scene, x, y))
     item = SceneObject(new_id, shape.category, shape.category, shape.id, shape.size_m, pose)
     edge = None if floor is None else Support(new_id, floor.id)
-    session.edit(_inserting(shape.category), lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
-    _remember(client, shape_id)
+    _insert(client, shape, new_id, lambda s: edits.insert(s, item, edge))
 
 
 def _insert_on(client: Client, shape: Shape, new_id: str, parent: SceneObject) -> Scene | None:
@@ -105,8 +105,7 @@ def _hang_in_view(client: Client, shape_id: str) -> bool:
         return False
     new_id = edits.fresh_id(session.scene, shape.category)
     item, edge = insertion(scene, shape, new_id, hit, 0.0)
-    session.edit(_inserting(shape.category), lambda s: edits.insert(s, item, edge), by=client, selection=(new_id,))
-    _remember(client, shape_id)
+    _insert(client, shape, new_id, lambda s: edits.insert(s, item, edge))
     return True
 
 
@@ -166,13 +165,7 @@ def place_at(client: Client, shape_id: str, origin: Float[np.ndarray, 3], direct
     item, edge = insertion(scene, shape, new_id, hit, yaw)
     item = replace(item, pose=clear_of_walls(scene, item), by_hand=True)
     known = scene.has_object(edge.parent) or scene.has_plane(edge.parent)
-    session.edit(
-        _inserting(shape.category),
-        lambda s: edits.insert(s, item, edge if known else None),
-        by=client,
-        selection=(new_id,),
-    )
-    _remember(client, shape_id)
+    _insert(client, shape, new_id, lambda s: edits.insert(s, item, edge if known else None))
 
 
 def _ground_hit(origin: np.ndarray, direction: np.ndarray) -> Hit | None:

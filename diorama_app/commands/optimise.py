@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from diorama_app.commands.glide import pose_between
 from diorama_app.session.client import Client
 from diorama_app.session.layout_run import Costs, LayoutRun, Samples
 from diorama_app.session.problem_checker import problems
@@ -18,7 +19,6 @@ from diorama_core.artefacts import LayoutReport
 from diorama_core.editing.collisions import Collisions
 from diorama_core.editing.hand_placed import ids_to_keep
 from diorama_core.errors import EditRefused
-from diorama_core.geometry.rotations import rotation_from_vector, rotation_vector
 from diorama_core.layout.report import layout_figures
 from diorama_core.layout.settings import AS_IT_IS, Weights
 from diorama_core.layout.what_got_worse import Problems, find_excessive_resizes, new_problems, with_believed_sizes
@@ -198,17 +198,10 @@ def _glide(session: EditorSession, start: Scene, final: Scene, progress: Progres
     frames = int(GLIDE_S / PREVIEW_EVERY_S)
     for frame in range(1, frames + 1):
         share = 0.5 - 0.5 * np.cos(np.pi * frame / frames)
-        between = {o.id: _interpolate_pose(start.object(o.id).pose, o.pose, float(share)) for o in final.objects}
+        between = {o.id: pose_between(start.object(o.id).pose, o.pose, float(share)) for o in final.objects}
         session.ui_thread.post(partial(session.viewport.preview, between), key="preview")
         time.sleep(PREVIEW_EVERY_S)
         progress.report(1.0, "Settling")
-
-
-def _interpolate_pose(a: Pose, b: Pose, share: float) -> Pose:
-    turn = rotation_vector(b.R_world_object @ a.R_world_object.T)
-    R = rotation_from_vector(share * turn) @ a.R_world_object
-    u, _singular, vt = np.linalg.svd(R)
-    return Pose(u @ vt, a.position + share * (b.position - a.position), a.scale + share * (b.scale - a.scale))
 
 
 def _show_step(session: EditorSession, scene: Scene, run: LayoutRun, samples: Samples) -> None:

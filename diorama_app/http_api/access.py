@@ -102,13 +102,19 @@ def too_large(length: int) -> str:
 
 async def answer(send: Send, status: int, reason: str) -> None:
     """A refusal as every other error is told: `{"error": "..."}`."""
-    body = json.dumps({"error": reason}).encode()
-    headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode()), *HEADERS]
+    body, headers = _error(reason)
+    headers += HEADERS
     headers += [(b"www-authenticate", b"Bearer")] if status == 401 else []
     headers += [(b"retry-after", b"5")] if status == 503 else []
     headers += [(b"connection", b"close")] if status in (408, 413) else []
     await send({"type": "http.response.start", "status": status, "headers": headers})
     await send({"type": "http.response.body", "body": body})
+
+
+def _error(reason: str) -> tuple[bytes, list[tuple[bytes, bytes]]]:
+    """A body and its headers."""
+    body = json.dumps({"error": reason}).encode()
+    return body, [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
 
 
 def _address(scope: Scope, headers: dict[str, str]) -> str:
@@ -196,13 +202,9 @@ class Connection(H11Protocol):  # type: ignore[misc]  # uvicorn's modules are An
 
     def send_400_response(self, msg: str) -> None:
         """Tell that the request is no HTTP."""
-        body = json.dumps({"error": f"the request cannot be read ({msg})"}).encode()
-        headers = [
-            (b"content-type", b"application/json"),
-            (b"content-length", str(len(body)).encode()),
-            (b"connection", b"close"),
-        ]
-        for event in (h11.Response(status_code=400, headers=headers), h11.Data(data=body), h11.EndOfMessage()):
+        body, headers = _error(f"the request cannot be read ({msg})")
+        head = h11.Response(status_code=400, headers=[*headers, (b"connection", b"close")])
+        for event in (head, h11.Data(data=body), h11.EndOfMessage()):
             self.transport.write(self.conn.send(event))
         self.transport.close()
 

@@ -4,7 +4,6 @@ one, whatever state they are in, and one JSON line with the status that fits.
 
 from __future__ import annotations
 
-import io
 import re
 import tempfile
 from functools import lru_cache
@@ -14,7 +13,6 @@ from typing import Any
 from fastapi import HTTPException, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from PIL import Image
 from pydantic import BaseModel, Field
 from starlette.exceptions import HTTPException as StarletteHTTPException
 
@@ -23,6 +21,7 @@ from diorama_app.http_api.job import Job, State
 from diorama_app.http_api.jobs import JobQueue, JobStateError, QueueFullError, UnknownJobError
 from diorama_app.http_api.open_projects import StaleVersionError, UnknownProjectError
 from diorama_app.projects.formats import EXPORT_FORMATS
+from diorama_app.projects.pictures import encode_picture
 from diorama_core.errors import DioramaError, EditRefused, ExportError, InputError, ProjectError, UnavailableError
 from diorama_core.export import Format
 from diorama_core.export.gathering import ExportOptions
@@ -182,9 +181,7 @@ def png(room: diorama.Reconstruction, view: str, size: tuple[int, int], *, ids: 
         shown = {o.id: seen == k for k, o in enumerate(room.scene.objects)}
         shown = {name: mask for name, mask in shown.items() if mask.any()}
         picture = draw_marks(picture, list(shown.values()), list(shown))
-    content = io.BytesIO()
-    Image.fromarray(picture).save(content, "PNG")
-    return content.getvalue()
+    return encode_picture(picture, "PNG")
 
 
 def format_of(name: str) -> Format:

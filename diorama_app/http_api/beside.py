@@ -17,13 +17,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import platformdirs
-import uvicorn
 from pydantic import BaseModel, ValidationError
 
-from diorama_app.http_api.access import Connection
 from diorama_app.http_api.open_projects import OpenProjects
 from diorama_app.http_api.routes import create_app
-from diorama_app.http_api.server import IDLE_S, listen
+from diorama_app.http_api.server import listen, uvicorn_server
 from diorama_app.serve import Running
 from diorama_app.web.visitors import Visitors
 from diorama_core.io.atomic import write_atomically
@@ -46,26 +44,11 @@ class NotedServer(BaseModel):
 
 @contextlib.contextmanager
 def api_beside(running: Running, token: str | None) -> Iterator[str]:
-    """Answer other programs while the editor runs; gives the address.
-
-    Args:
-        running: the editor.
-        token: the page's, which requests must bring, too; None for none.
-    """
+    """Answer other programs while the editor runs, where they bring the page's token, if any; gives the address."""
     opened = OpenProjects(lambda: running)
     listening = listen(HOST, 0)
     app = create_app(None, Visitors(HOST, token), opened)
-    config = uvicorn.Config(
-        app,
-        log_level="warning",
-        timeout_keep_alive=IDLE_S,
-        timeout_graceful_shutdown=END_S,
-        http=Connection,
-        server_header=False,
-        lifespan="off",
-        ws="none",
-    )
-    server = uvicorn.Server(config)
+    server = uvicorn_server(app, timeout_graceful_shutdown=END_S, lifespan="off")
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True, name="api")
     thread.start()
     address = f"http://{HOST}:{listening.getsockname()[1]}/"

@@ -52,11 +52,7 @@ class OpenProjects:
     """The editor's projects. May be used from any thread but the editor's own."""
 
     def __init__(self, start: Callable[[], Running]) -> None:
-        """Open nothing yet.
-
-        Args:
-            start: gives the editor's server, when it is needed first.
-        """
+        """Open nothing yet; `start` gives the editor's server, when it is needed first."""
         self._start, self._lock = start, threading.Lock()
         self._running: Running | None = None
         self._decoder = LimitedProcess()
@@ -100,10 +96,6 @@ class OpenProjects:
     def begin(self, upload: Upload, author: str) -> EditorSession:
         """Make a project of a photo and build its scene; every browser is offered to go there.
 
-        Args:
-            upload: the photo with what is known of it.
-            author: who asks.
-
         Raises:
             InputError: a file cannot be used, or nothing is marked and no network finds furniture.
             ProjectError: the project cannot be written.
@@ -118,10 +110,6 @@ class OpenProjects:
 
     def describe(self, words: str, author: str) -> EditorSession:
         """Make a project of a description in words; every browser is offered to go there.
-
-        Args:
-            words: of the room and its furniture.
-            author: who asks.
 
         Raises:
             InputError: nothing is described.

@@ -42,12 +42,15 @@ POLL_S = 0.1
 project_router = APIRouter(prefix="/v1/projects", responses=error_docs(404, 500))
 
 
-def _projects(request: Request) -> OpenProjects:
+def _opened(request: Request) -> OpenProjects:
     return request.app.state.opened
 
 
-def _session(request: Request, name: str) -> EditorSession:
-    return _projects(request).session(name)
+Opened = Annotated[OpenProjects, Depends(_opened)]
+
+
+def _session(opened: Opened, name: str) -> EditorSession:
+    return opened.session(name)
 
 
 Session = Annotated[EditorSession, Depends(_session)]
@@ -55,9 +58,8 @@ Session = Annotated[EditorSession, Depends(_session)]
 
 
 @project_router.get("", operation_id="list_projects")
-def list_projects(request: Request) -> ProjectList:
+def list_projects(opened: Opened) -> ProjectList:
     """All projects."""
-    opened = _projects(request)
     here = {e.session.project.folder for e in opened.running.workspace.editors if e.session.project is not None}
     rows = [
         answers.ProjectAnswer(project=address_of(f), title=name_of(f), open=f in here, folder=str(f.resolve()))
@@ -68,24 +70,22 @@ def list_projects(request: Request) -> ProjectList:
 
 @project_router.post("", status_code=202, operation_id="begin_project", responses=error_docs(400, 408, 413, 422, 503))
 def begin_project(
-    request: Request, form: PhotoForm, author: Annotated[str, Form(max_length=40)] = AUTHOR
+    opened: Opened, form: PhotoForm, author: Annotated[str, Form(max_length=40)] = AUTHOR
 ) -> answers.SceneAnswer:
     """Send a photo: it becomes a project whose scene is built, in the editor; `job` says how far it is."""
-    opened = _projects(request)
     return _scene_answer(opened, opened.begin(form, author))
 
 
 @project_router.post("/described", status_code=201, operation_id="describe_project", responses=error_docs(422, 501))
-def describe_project(request: Request, body: DescribeRequest) -> answers.SceneAnswer:
+def describe_project(opened: Opened, body: DescribeRequest) -> answers.SceneAnswer:
     """Describe a room in words: it becomes a project with a scene, at the end of the request."""
-    opened = _projects(request)
     return _scene_answer(opened, opened.describe(body.text, body.author))
 
 
 @project_router.get("/{name}", operation_id="get_project")
-def get_project(request: Request, session: Session) -> answers.SceneAnswer:
+def get_project(opened: Opened, session: Session) -> answers.SceneAnswer:
     """The open scene: objects, room, version, what is wrong and what is doubtful."""
-    return _scene_answer(_projects(request), session)
+    return _scene_answer(opened, session)
 
 
 def _scene_answer(opened: OpenProjects, session: EditorSession) -> answers.SceneAnswer:

@@ -6,7 +6,7 @@ import asyncio
 from pathlib import Path
 from typing import Annotated, Any
 
-from fastapi import APIRouter, FastAPI, Form, HTTPException, Query, Request, Response
+from fastapi import APIRouter, Depends, FastAPI, Form, HTTPException, Query, Request, Response
 from fastapi.exceptions import RequestValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException as StarletteHTTPException
@@ -50,15 +50,21 @@ router = APIRouter(prefix="/v1", responses=error_docs())
 format_router = APIRouter(prefix="/v1", responses=error_docs())
 
 
+def _queue(request: Request) -> JobQueue:
+    return request.app.state.queue
+
+
+Queue = Annotated[JobQueue, Depends(_queue)]
+
+
 @router.post("/jobs", status_code=202, operation_id="create_job", responses=error_docs(400, 408, 413, 422, 429, 503))
 def create_job(
-    request: Request,
+    queue: Queue,
     form: PhotoForm,
     profile: Annotated[Profile, Form(description="Which networks are used.")] = "auto",
     recipe: Annotated[RecipeName, Form(description="The layout optimiser.")] = "feasible",
 ) -> JobAnswer:
     """Send a photo, with what is known of it, and queue its build."""
-    queue = _queue(request)
     read = sent.decode(form, queue.decoder)
     content: dict[Upload, Any] = {"photo": form.photo, "depth": form.depth, "masks": form.masks}
     given = {kind: data for kind, data in content.items() if data is not None}
@@ -66,29 +72,26 @@ def create_job(
 
 
 @router.get("/jobs", operation_id="list_jobs")
-def list_jobs(request: Request) -> JobList:
+def list_jobs(queue: Queue) -> JobList:
     """All jobs, newest first."""
-    queue = _queue(request)
     return JobList(jobs=[answer_of(queue, job) for job in queue.jobs()])
 
 
 @router.get("/jobs/{job_id}", operation_id="get_job", responses=error_docs(404, 422))
 async def get_job(
-    request: Request,
+    queue: Queue,
     job_id: str,
     wait_s: Annotated[
         float, Query(ge=0, le=MAX_WAIT_S, description="Wait so long for the job's end before answering.")
     ] = 0.0,
 ) -> JobAnswer:
     """How far a job is."""
-    queue = _queue(request)
     return await run_in_threadpool(answer_of, queue, await queue.wait(job_id, wait_s))
 
 
 @router.post("/jobs/{job_id}/cancel", operation_id="cancel_job", responses=error_docs(404, 409, 422))
-def cancel_job(request: Request, job_id: str) -> JobAnswer:
+def cancel_job(queue: Queue, job_id: str) -> JobAnswer:
     """Stop a job that waits or runs; one that runs stops within seconds. Its project stays."""
-    queue = _queue(request)
     return answer_of(queue, queue.cancel(job_id))
 
 
@@ -99,16 +102,16 @@ def cancel_job(request: Request, job_id: str) -> JobAnswer:
     response_class=Response,
     responses=error_docs(404, 409, 422),
 )
-def delete_job(request: Request, job_id: str) -> Response:
+def delete_job(queue: Queue, job_id: str) -> Response:
     """Delete a job that is over, with its project."""
-    _queue(request).remove(job_id)
+    queue.remove(job_id)
     return Response(status_code=204)
 
 
 @router.get("/jobs/{job_id}/scene", operation_id="get_scene", responses=error_docs(404, 422, 500))
-def get_scene(request: Request, job_id: str) -> dict[str, Any]:
+def get_scene(queue: Queue, job_id: str) -> dict[str, Any]:
     """The scene file of a finished job; docs/scene-file.md describes it."""
-    path = _project(request, job_id) / "scene.json"
+    path = _project(queue, job_id) / "scene.json"
     document = read_json(path, ProjectError)
     if not isinstance(document, dict):
         raise ProjectError(f"{path} is no scene file; build the scene again")
@@ -123,13 +126,14 @@ def get_scene(request: Request, job_id: str) -> dict[str, Any]:
 )
 async def get_picture(
     request: Request,
+    queue: Queue,
     job_id: str,
     view: Annotated[str, Query(description=VIEWS, max_length=80)] = "photo",
     width: Annotated[int, Query(ge=16, le=2048)] = 640,
     height: Annotated[int, Query(ge=16, le=2048)] = 480,
 ) -> Response:
     """A picture of a finished job's scene."""
-    folder = _project(request, job_id)
+    folder = _project(queue, job_id)
     async with request.app.state.few:
         content = await run_in_threadpool(lambda: png(diorama.load(folder), view, (width, height)))
     return Response(content, media_type="image/png")
@@ -143,13 +147,14 @@ async def get_picture(
 )
 async def export_scene(
     request: Request,
+    queue: Queue,
     job_id: str,
     format_name: str,
     ceiling: Annotated[bool, Query(description="Whether ceilings are in it.")] = True,
     texture_size: Annotated[int | None, Query(ge=16, le=8192, description="Longest side of pictures.")] = None,
 ) -> Response:
     """A finished job's scene as a file for other programs; `/v1/formats` lists them."""
-    format_, folder = format_of(format_name), _project(request, job_id)
+    format_, folder = format_of(format_name), _project(queue, job_id)
     options = ExportOptions(ceiling=ceiling, max_texture_px=texture_size)
     async with request.app.state.few:
         return await run_in_threadpool(lambda: file_answer(diorama.load(folder), job_id, format_, options))
@@ -162,13 +167,7 @@ def list_formats() -> list[FormatAnswer]:
 
 
 def create_app(queue: JobQueue | None, visitors: Visitors, opened: OpenProjects | None = None) -> FastAPI:
-    """The application.
-
-    Args:
-        queue: builds; None where photos are built in the editor alone.
-        visitors: who may ask.
-        opened: projects that are open in the editor of this process; None where none can be.
-    """
+    """The application: builds, where there is a queue, and projects, where there is an editor in this process."""
     # No pages with documentation: those that FastAPI offers load their scripts from other servers.
     app = FastAPI(title="Diorama", version="1", description=ABOUT, docs_url=None, redoc_url=None)
     described = app.openapi
@@ -196,13 +195,8 @@ def _with_files(document: dict[str, Any]) -> dict[str, Any]:
     return document
 
 
-def _queue(request: Request) -> JobQueue:
-    return request.app.state.queue
-
-
-def _project(request: Request, job_id: str) -> Path:
+def _project(queue: JobQueue, job_id: str) -> Path:
     """The project of a job that is done."""
-    queue = _queue(request)
     job = queue.job(job_id)
     if job.state != "done":
         raise HTTPException(404, f"{job_id} has no scene: it is {job.state}")

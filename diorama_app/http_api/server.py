@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import socket
 from pathlib import Path
+from typing import Any
 
 import uvicorn
+from fastapi import FastAPI
 
 import diorama_core as diorama
 from diorama_app.http_api.access import Connection
@@ -50,15 +52,6 @@ def serve_api(*, projects_dir: Path, host: str, port: int, token: str | None, li
 
     opened = OpenProjects(editor)
     app = create_app(queue, Visitors(host, token), opened)
-    config = uvicorn.Config(
-        app,
-        log_level="warning",
-        limit_concurrency=MAX_CONNECTIONS,
-        timeout_keep_alive=IDLE_S,
-        http=Connection,
-        server_header=False,
-        ws="none",
-    )
     address = page_address(host, listening.getsockname()[1], None)
     print(f"Diorama answers at {address} (Ctrl+C stops it)", flush=True)
     print(f"Its OpenAPI document is at {address}openapi.json", flush=True)
@@ -66,7 +59,7 @@ def serve_api(*, projects_dir: Path, host: str, port: int, token: str | None, li
         print(f"Requests must bring the header 'Authorization: Bearer {token}'", flush=True)
     queue.start()
     try:
-        uvicorn.Server(config).run(sockets=[listening])
+        uvicorn_server(app, limit_concurrency=MAX_CONNECTIONS).run(sockets=[listening])
     except KeyboardInterrupt:
         print("Stopping.", flush=True)
     finally:
@@ -75,6 +68,12 @@ def serve_api(*, projects_dir: Path, host: str, port: int, token: str | None, li
             one.stop()
         queue.close()
         listening.close()
+
+
+def uvicorn_server(app: FastAPI, **settings: Any) -> uvicorn.Server:
+    """A server of the application, with what is set for it alone."""
+    common = {"log_level": "warning", "timeout_keep_alive": IDLE_S, "server_header": False, "ws": "none"}
+    return uvicorn.Server(uvicorn.Config(app, http=Connection, **common, **settings))
 
 
 def listen(host: str, port: int) -> socket.socket:

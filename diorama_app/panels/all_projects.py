@@ -7,6 +7,8 @@ from pathlib import Path
 
 import viser
 
+from diorama_app.panels.fields import options_html
+from diorama_app.panels.projects import is_open, listed_folder, visit_listed
 from diorama_app.projects import manage
 from diorama_app.projects.pictures import project_picture
 from diorama_app.session.client import Client
@@ -31,7 +33,7 @@ class AllProjects:
         self._client = client
         self._open = False
         self._words, self._sort = "", "changed"
-        self._html = LiveHtml(gui, self._act, floating="dio-projects")
+        self._html = LiveHtml(gui, lambda action: client.post(lambda: self._do(action)), floating="dio-projects")
         client.open_projects = self.open
 
     def refresh(self) -> None:
@@ -61,10 +63,7 @@ class AllProjects:
         elif self._sort == "name":
             folders.sort(key=lambda folder: names[folder].casefold())
         tiles = "".join(self._tile(folder, names[folder]) for folder in folders)
-        options = "".join(
-            f'<option value="{key}" {"selected" if key == self._sort else ""}>{text(_(words))}</option>'
-            for key, words in SORTS.items()
-        )
+        options = options_html(((key, _(words)) for key, words in SORTS.items()), self._sort)
         bin_of = "".join(_bin_row(place) for place in manage.projects_in_bin(self._client.session.projects_dir))
         bin_of = f"<details><summary>{text(_('Bin'))}</summary>{bin_of}</details>" if bin_of else ""
         title = text(_("All projects"))
@@ -79,7 +78,7 @@ class AllProjects:
 
     def _tile(self, folder: Path, name: str) -> str:
         address, session = manage.address_of(folder), self._client.session
-        current, written = _is_open(session.project, folder), manage.mtime(folder)
+        current, written = is_open(session.project, folder), manage.mtime(folder)
         picture = session.thumbnails.picture_html(f"{folder} {written}", lambda: project_picture(folder))
         when = time.strftime("%Y-%m-%d, %H:%M", time.localtime(written))
         hidden = "" if self._words.casefold() in name.casefold() else "hidden"
@@ -94,9 +93,6 @@ class AllProjects:
             + "</div></div>"
         )
 
-    def _act(self, action: Action) -> None:
-        self._client.post(lambda: self._do(action))
-
     def _do(self, action: Action) -> None:
         session = self._client.session
         if action.do == "close":
@@ -109,9 +105,13 @@ class AllProjects:
         elif action.do == "unbin":
             self._restore(action.arg)
         elif action.do == "rename":
-            self._rename(_folder(session.projects_dir, action.pair[0]), action.pair[1])
-        elif action.do in ("open", "copy", "bin"):
-            self._with_listed(action.do, _folder(session.projects_dir, action.arg))
+            self._rename(listed_folder(session, action.pair[0]), action.pair[1])
+        elif action.do == "open":
+            listed_folder(session, action.arg)  # refused while the page is still open
+            self.close()
+            visit_listed(self._client, action.arg)
+        elif action.do in ("copy", "bin"):
+            self._with_listed(action.do, listed_folder(session, action.arg))
         session.glances.forget()
         session.refresh_panels()
 
@@ -125,7 +125,7 @@ class AllProjects:
 
     def _rename(self, folder: Path, name: str) -> None:
         session = self._client.session
-        if _is_open(session.project, folder):
+        if is_open(session.project, folder):
             session.need_writable()
         else:
             ProjectLock(folder).release()  # refused while another program has it open
@@ -137,34 +137,18 @@ class AllProjects:
             session.autosave.flush()
             copy = manage.duplicate_project(folder, session.projects_dir)
             client.toast(_("Copied as {name}.").format(name=copy.name), False)
-        elif do == "bin":
-            if _is_open(session.project, folder):
+        else:
+            if is_open(session.project, folder):
                 raise EditRefused("that project is open; open another one first")
             ProjectLock(folder).release()
             name, place = manage.name_of(folder), manage.to_bin(folder, session.projects_dir)
             message = _("{name} is in the bin.").format(name=name)
             client.offer(message, _("Restore"), lambda: self._undelete(manage.address_of(place)))
-        else:
-            self.close()
-            project = Project.open(folder)
-            session.visit(client, project, _("Opened {name}.").format(name=project.name))
 
     def _undelete(self, address: str) -> None:
         self._restore(address)
         self._client.session.glances.forget()
         self._client.session.refresh_panels()
-
-
-def _folder(projects_dir: Path, address: str) -> Path:
-    """The folder of a project that is listed: a page must not reach outside the projects' folder."""
-    folder = manage.find_project(projects_dir, address)
-    if folder is None:
-        raise EditRefused("that project no longer exists")
-    return folder
-
-
-def _is_open(project: Project | None, folder: Path) -> bool:
-    return project is not None and project.folder.resolve() == folder.resolve()
 
 
 def _bin_row(place: Path) -> str:

@@ -9,10 +9,9 @@ import viser
 
 from diorama_app.commands.import_model import import_model
 from diorama_app.panels.fields import Take, add_hidden_upload
-from diorama_app.panels.input_questions import ask_which
+from diorama_app.panels.messages import ask_which
 from diorama_app.panels.photo import PhotoPanel
-from diorama_app.projects.dropped import Dropped, Reading
-from diorama_app.projects.dropped_files import files_of, sources_of, upload_of
+from diorama_app.projects.dropped import Dropped, Reading, files_of, sources_of, upload_of
 from diorama_app.reconstruction.dropped_photos import begin_each, build_one_room
 from diorama_app.reconstruction.opening_job import open_file, open_packed
 from diorama_app.session.client import Client
@@ -40,7 +39,7 @@ class DroppedFiles:
             self._act(name, content, reading)
 
         size = None if inputs is None else (inputs.photo.width, inputs.photo.height)
-        client.session.reader.recognise(content, name, size, client.id, client.post, handle)
+        client.session.reader.recognise(content, name, size, client, handle)
 
     def _act(self, name: str, content: bytes, reading: Reading) -> None:
         client = self._client
@@ -62,12 +61,6 @@ class DroppedFiles:
 
 
 def listen_for_drops(gui: viser.GuiApi, client: Client, take: Take) -> None:
-    """Let the page send what is dropped. Call it where the panel is always there.
-
-    Args:
-        gui: the page.
-        client: the owner.
-        take: takes name and content.
-    """
+    """Let the page send what is dropped. Call it where the panel is always there."""
     uuid = add_hidden_upload(gui, client, _("Dropped files"), take)
     gui.add_html(f'<i id="dio-drop-to" data-upload="{text(uuid)}"></i>')

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import viser
 
+from diorama_app.panels.fields import options_html
 from diorama_app.projects.formats import EXPORT_FORMATS, GUIDES, Choice
 from diorama_app.reconstruction.written_files import download_suffix, export
 from diorama_app.session.client import Client
@@ -57,7 +58,7 @@ class ExportPanel:
         self._texture_px = 0
         self._compression: Compression = "none"
         self._lights: LightUnits = "unit"
-        self._html = LiveHtml(gui, self._act)
+        self._html = LiveHtml(gui, lambda action: client.post(lambda: self._do(action)))
 
     def refresh(self) -> None:
         """Draw the list."""
@@ -116,9 +117,6 @@ class ExportPanel:
     def _is_on(self, choice: Choice) -> bool:
         return choice in self._on and self._is_possible(choice)
 
-    def _act(self, action: Action) -> None:
-        self._client.post(lambda: self._do(action))
-
     def _do(self, action: Action) -> None:
         if action.do == "choose" and action.arg in GUIDES:
             self._format = action.arg
@@ -163,10 +161,7 @@ def _choice(label: str, change: str, choices: Mapping[ChoiceName, tuple[str, str
 
 def _field(label: str, change: str, names: Mapping[str, str], chosen: str) -> str:
     """A label and a list to choose from."""
-    options = "".join(
-        f'<option value="{text(value)}" {"selected" if value == chosen else ""}>{text(name)}</option>'
-        for value, name in names.items()
-    )
+    options = options_html(names.items(), chosen)
     return (
         '<label style="display:flex;align-items:center;gap:8px;margin-top:6px">'
         f'<span style="flex:0 0 82px">{text(label)}</span>'

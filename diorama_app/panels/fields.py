@@ -1,17 +1,19 @@
-"""Input fields that show the document and write to it, without echoing their own updates, and buttons that take a file,
-shown in a panel or hidden behind something else that starts them.
+"""What panels are made of: fields that show the document and write to it, without echoing their own updates, lists to
+choose from, scripts, and buttons that take a file, shown or hidden behind something else that starts them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import viser
 
 from diorama_app.session.client import Client
-from diorama_app.web.html import text
+from diorama_app.strings import _
+from diorama_app.web.html import run_once, text
 from diorama_app.web.viser_adapter import component_uuid
+from diorama_core.errors import InputError
 from diorama_core.io.text import clean_text
 
 QUIET_COLOUR = (84, 96, 114)
@@ -74,6 +76,48 @@ def unique_names(names: list[str]) -> list[str]:
         seen[name] = seen.get(name, 0) + 1
         result.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
     return result
+
+
+def options_html(choices: Iterable[tuple[str, str]], chosen: str) -> str:
+    """Options of a list, as value and name, with this one chosen."""
+    return "".join(
+        f'<option value="{text(value)}" {"selected" if value == chosen else ""}>{text(name)}</option>'
+        for value, name in choices
+    )
+
+
+def read_number(words: str, refusal: str) -> float:
+    """A number as people write it, with a comma or a sign of its unit.
+
+    Raises:
+        InputError: the refusal, which names the words.
+    """
+    try:
+        return float(words.replace(",", ".").strip().rstrip("%°").strip())
+    except ValueError as error:
+        raise InputError(_(refusal).format(words=words[:20])) from error
+
+
+class PageScript:
+    """A script that the page runs where it differs from the one before."""
+
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self._html = gui.add_html("")
+        self._told = ""
+        self._runs = 0
+
+    def run(self, script: str, *, again: bool = False) -> None:
+        """Run a script; one that ran last only with `again`."""
+        if again:
+            self._runs += 1
+            script = f"{script} /* {self._runs} */"
+        if script != self._told:
+            self._told = script
+            self._html.content = run_once(script)
+
+    def forget(self) -> None:
+        """Send the next script even if it is the one before."""
+        self._told = ""
 
 
 Take = Callable[[str, bytes], None]

@@ -13,8 +13,9 @@ import numpy as np
 import viser
 
 from diorama_app.commands.insert import place_at
+from diorama_app.panels.fields import PageScript
 from diorama_app.session.client import Client, Placing
-from diorama_app.web.html import Action, LiveHtml, run_once
+from diorama_app.web.html import Action, LiveHtml
 from diorama_core.editing.placing import places_of
 from diorama_core.errors import EditRefused
 from diorama_core.geometry.openings import DOOR
@@ -35,11 +36,10 @@ class PlacingGhost:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._html = gui.add_html("")
+        self._script = PageScript(gui)
         LiveHtml(gui, lambda action: client.post(lambda: self._drop(action))).show(DROP)
         self._node: viser.GlbHandle | None = None
         self._shape_id: str | None = None
-        self._told: str = ""
 
     def refresh(self) -> None:
         """Show what is being placed, and tell the page where it may be put."""
@@ -54,10 +54,7 @@ class PlacingGhost:
                 scene = self._client.viser_client.scene
                 self._node = scene.add_glb(NODE, session.shapes.glb(wanted), position=FAR_M, cast_shadow=False)
         about = None if wanted is None else ghost_data(session.scene, session.library, session.library.shape(wanted))
-        state = json.dumps(about, separators=(",", ":"))
-        if state != (self._told or "null"):
-            self._told = state
-            self._html.content = run_once(f"window.__dioGhost({state});")
+        self._script.run(f"window.__dioGhost({json.dumps(about, separators=(',', ':'))});")
 
     def _drop(self, action: Action) -> None:
         """Put what is dragged onto the view where the ray of the pointer ends."""

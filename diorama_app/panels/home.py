@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import viser
 
+from diorama_app.panels.fields import options_html
 from diorama_app.projects import manage
 from diorama_app.session.client import Client
 from diorama_app.strings import _
@@ -63,14 +64,11 @@ class HomePanel:
         session = self._client.session
         here = None if session.project is None else session.project.folder
         others = [f for f in manage.recent_projects(session.projects_dir) if f != here and (f / "scene.json").exists()]
-        options = "".join(
-            f'<option value="{text(manage.address_of(f))}" {"selected" if f == self._joining else ""}>'
-            f"{text(manage.name_of(f))}</option>"
-            for f in others
-        )
-        title = text(_("Join another project"))
-        chosen = f'<option value="">{title}</option>{options}'
-        made = f'<select data-change="project" aria-label="{title}">{chosen}</select>'
+        title = _("Join another project")
+        offered = [("", title), *((manage.address_of(f), manage.name_of(f)) for f in others)]
+        chosen = "" if self._joining is None else manage.address_of(self._joining)
+        options = options_html(offered, chosen)
+        made = f'<select data-change="project" aria-label="{text(title)}">{options}</select>'
         if self._joining not in others:
             return made
         other = Project.open(self._joining).load_scene()

@@ -23,13 +23,7 @@ class InPlace(Generic[P]):
     """A panel whose failures are its own: other panels go on, and its elements make room for a line that says so."""
 
     def __init__(self, gui: viser.GuiApi, title: str, make: Callable[[], P]) -> None:
-        """Make the panel here.
-
-        Args:
-            gui: the page.
-            title: what people call the panel.
-            make: makes the panel's elements.
-        """
+        """Make the panel, which people call by its title, here."""
         self._title = title
         self._line = LiveHtml(gui)
         self._folder = gui.add_folder(None)

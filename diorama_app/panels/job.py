@@ -9,10 +9,11 @@ from typing import Any
 import viser
 
 from diorama_app.commands.optimise import pause
+from diorama_app.panels.fields import PageScript
 from diorama_app.session.client import Client
 from diorama_app.session.jobs import JobStatus
 from diorama_app.strings import SOURCE_LANGUAGE, _, language
-from diorama_app.web.html import Action, LiveHtml, run_once
+from diorama_app.web.html import Action, LiveHtml
 
 MIN_SHARE, MIN_S = 0.08, 4.0
 """Before, nothing can be said about the time that is left."""
@@ -26,8 +27,7 @@ class JobStrip:
         self._client = client
         sender = LiveHtml(gui, self._act)
         sender.show('<button type="button" id="dio-job-send" style="display:none" tabindex="-1"></button>')
-        self._html = gui.add_html("")
-        self._told = ""
+        self._script = PageScript(gui)
         self._tell(None)
 
     def refresh(self) -> None:
@@ -54,10 +54,7 @@ class JobStrip:
         )
 
     def _tell(self, job: dict[str, Any] | None) -> None:
-        state = json.dumps(job)
-        if state != self._told:
-            self._told = state
-            self._html.content = run_once(f"window.__dioJob({state})")
+        self._script.run(f"window.__dioJob({json.dumps(job)})")
 
     def _act(self, action: Action) -> None:
         session = self._client.session
@@ -73,12 +70,7 @@ class JobStrip:
 
 
 def time_left(status: JobStatus, now: float) -> str:
-    """In words, by what was done so far; empty while nothing can be said.
-
-    Args:
-        status: of the running job.
-        now: on the clock of `JobStatus.started_at` (s).
-    """
+    """In words, by what was done so far at `now` (s, monotonic); empty while nothing can be said."""
     spent = now - status.started_at
     if status.cancelling or not MIN_SHARE <= status.fraction < 1.0 or spent < MIN_S:
         return ""

@@ -10,7 +10,7 @@ import viser
 
 from diorama_app.commands.import_model import import_model
 from diorama_app.commands.insert import insert_shape, start_placing, stop_placing, toggle_favourite
-from diorama_app.panels.fields import UploadField, on_change
+from diorama_app.panels.fields import UploadField, on_change, options_html
 from diorama_app.panels.own_models import OwnShelf
 from diorama_app.session.client import Client, Placing
 from diorama_app.session.units import format_size
@@ -233,8 +233,4 @@ class LibraryPanel:
 
 
 def _select(do: str, name: str, options: list[tuple[str, str]], chosen: str) -> str:
-    rows = "".join(
-        f'<option value="{text(value)}" {"selected" if value == chosen else ""}>{text(label)}</option>'
-        for value, label in options
-    )
-    return f'<select data-change="{do}" aria-label="{text(name)}">{rows}</select>'
+    return f'<select data-change="{do}" aria-label="{text(name)}">{options_html(options, chosen)}</select>'

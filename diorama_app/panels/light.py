@@ -13,9 +13,10 @@ import numpy as np
 import viser
 
 from diorama_app.commands import room_looks as lighting
+from diorama_app.panels.fields import PageScript, read_number
 from diorama_app.session.client import Client
-from diorama_app.strings import _
-from diorama_app.web.html import Action, LiveHtml, button, run_once, text
+from diorama_app.strings import N_, _
+from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.editing.sunlight import sun_azimuth
 from diorama_core.errors import InputError
 from diorama_core.geometry.sun import sun_direction
@@ -53,13 +54,12 @@ class LightPanel:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._told = ""
         self._folder = gui.add_folder(_("Light"), expand_by_default=False)
         with self._folder:
             self._modes = LiveHtml(gui, self._act)
             self._sliders = LiveHtml(gui, self._act)
             self._lamps = LiveHtml(gui, self._act)
-            self._teller = gui.add_html("")
+            self._script = PageScript(gui)
 
     def refresh(self) -> None:
         """Draw what is set."""
@@ -80,10 +80,7 @@ class LightPanel:
         self._lamps.show(_lamps(scene))
         about = json.dumps(light_state(scene), separators=(",", ":"))
         sun = self._client.session.viewport.room_light.told or "null"
-        script = f"window.__dioLight.told({about}); window.__dioSun.told({sun});"
-        if script != self._told:
-            self._told = script
-            self._teller.content = run_once(script)
+        self._script.run(f"window.__dioLight.told({about}); window.__dioSun.told({sun});")
 
     def _act(self, action: Action) -> None:
         merged = action.do in ("hour", "sun", "exposure")
@@ -161,10 +158,7 @@ def _round(point: Any) -> list[float]:
 
 
 def _number(words: str) -> float:
-    try:
-        number = float(words)
-    except ValueError as error:
-        raise InputError(_("“{words}” is not a number; write for example 0.5").format(words=words[:20])) from error
+    number = read_number(words, N_("“{words}” is not a number; write for example 0.5"))
     if not np.isfinite(number):
         raise InputError("the number is not finite; write for example 0.5")
     return number

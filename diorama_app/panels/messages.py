@@ -1,15 +1,23 @@
-"""Messages over the page: toasts with an undo button, the prompt for a pending click, and dialogs, one at a time."""
+"""Messages over the page: toasts with an undo button, the prompt for a pending click, and dialogs, one at a time.
+
+Such are questions about files that may mean several things: what they are, and how a depth map is to be read.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
+from typing import TypeVar
 
 import viser
 
+from diorama_app.panels.fields import on_press
+from diorama_app.projects.dropped import Dropped, Reading
 from diorama_app.session.client import Client, Measuring, Placing, Playing
 from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.perception.inputs.depth.scale import AmbiguousDepthError, DepthAnswer
 
 SHOWN_S = 30.0
 """A page fades a message 6 or 15 s after it has drawn it (`.dio-toast` in `static/panels.css`). The server ends it
@@ -34,13 +42,7 @@ class Toasts:
         self._show(f'<div class="dio-toast"><span>{text(_(message))}</span>{again}</div>')
 
     def offer(self, message: str, label: str, do: Callable[[], None]) -> None:
-        """Show a message with a button that does something; it stays longer than others.
-
-        Args:
-            message: for the person.
-            label: of the button.
-            do: called on the click.
-        """
+        """Show a message with a button that does something; it stays longer than others."""
         self._offered = do
         self._client.to_say = None  # the line of the step itself comes later, and would take the offer's place
         action = button(text(label), "offered")
@@ -110,3 +112,47 @@ def dialog(client: Client, title: str) -> Iterator[Callable[[], None]]:
     with client.viser_client.gui.add_modal(title) as modal:
         client.dialog = close
         yield close
+
+
+Answer = TypeVar("Answer")
+
+
+def ask_which(client: Client, name: str, dropped: Dropped, then: Callable[[Reading], None]) -> None:
+    """Ask what was dropped, and go on with the answer.
+
+    Args:
+        client: the browser that asked.
+        name: of what was dropped.
+        dropped: what it may be.
+        then: called with the answer.
+    """
+    choices = [(_capital(reading.words), reading) for reading in dropped.readings]
+    _ask(client, _("What is {name}?").format(name=name), dropped.unread(), choices, then)
+
+
+def ask_depth(client: Client, unknown: AmbiguousDepthError, then: Callable[[DepthAnswer], None]) -> None:
+    """Ask how a depth map is to be read, and go on with the answer."""
+    if not unknown.choices:
+        raise unknown
+    choices = [(_capital(answer.words), answer) for answer in unknown.choices]
+    _ask(client, _("How should the depth be read?"), str(unknown).split(";", 1)[0], choices, then)
+
+
+def _capital(words: str) -> str:
+    return _(words)[:1].upper() + _(words)[1:]
+
+
+def _ask(
+    client: Client, title: str, words: str, choices: Sequence[tuple[str, Answer]], then: Callable[[Answer], None]
+) -> None:
+    gui = client.viser_client.gui
+    with dialog(client, title) as close:
+        if words:
+            gui.add_html(f"<p>{text(_(words))}.</p>")
+        for label, answer in choices:
+            on_press(gui.add_button(label), partial(client.post, partial(_answer, close, then, answer)))
+
+
+def _answer(close: Callable[[], None], then: Callable[[Answer], None], answer: Answer) -> None:
+    close()
+    then(answer)

@@ -67,7 +67,7 @@ class Outliner:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._html = LiveHtml(gui, self._act)
+        self._html = LiveHtml(gui, lambda action: client.post(lambda: self._do(action)))
         self._takers = gui.add_html("")
         self._paused_until = 0.0
 
@@ -84,9 +84,6 @@ class Outliner:
     def _mark(self, ids: Sequence[str]) -> None:
         """Mark rows as places to drop onto; without drawing the tree anew, which would end the drag."""
         self._takers.content = run_once(_MARK % json.dumps(list(ids)))
-
-    def _act(self, action: Action) -> None:
-        self._client.post(lambda: self._do(action))
 
     def _do(self, action: Action) -> None:
         client, scene = self._client, self._client.session.scene

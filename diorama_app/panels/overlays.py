@@ -12,11 +12,12 @@ from jaxtyping import UInt8
 
 from diorama_app.commands.camera_presets import Views
 from diorama_app.commands.edit import supporter_name
+from diorama_app.panels.fields import PageScript
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_app.viewport.decorations import Outline
-from diorama_app.web.html import Action, LiveHtml, run_once, text
+from diorama_app.web.html import Action, LiveHtml, text
 from diorama_core.scene.room_edits import floor_height
 from diorama_core.scene.types import Architecture, Camera
 
@@ -124,27 +125,18 @@ def _slider(value: int) -> str:
     )
 
 
-_TOLD = "window.__dioSilhouettes.told(%s)"
-
-
 class Silhouettes:
     """Tells one page what is outlined in which colour."""
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._told = ""
-        self._html = gui.add_html("")
+        self._script = PageScript(gui)
         client.marks.on_outlines = lambda outlines: self.refresh()
 
     def refresh(self) -> None:
         """Tell the page what differs from what it knows."""
-        client = self._client
-        state = json.dumps(
-            {"lines": [_line(o) for o in client.marks.outlines], "names": self._names()}, separators=(",", ":")
-        )
-        if state != self._told:
-            self._told = state
-            self._html.content = run_once(_TOLD % state)
+        told = {"lines": [_line(o) for o in self._client.marks.outlines], "names": self._names()}
+        self._script.run(f"window.__dioSilhouettes.told({json.dumps(told, separators=(',', ':'))})")
 
     def _names(self) -> dict[str, str]:
         session = self._client.session

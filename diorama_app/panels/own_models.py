@@ -29,12 +29,7 @@ class OwnShelf:
         return library.own_models if isinstance(library, UserLibrary) else OwnModels()
 
     def folder_tiles(self, shapes: Iterable[Shape], tile: Callable[[Shape], str]) -> str:
-        """Tiles under the names of their folders; those in no folder come first.
-
-        Args:
-            shapes: what is shown.
-            tile: draws one.
-        """
+        """Tiles under the names of their folders; those in no folder come first."""
         models, folders = self.models, dict[str, list[Shape]]()
         for shape in shapes:
             folders.setdefault(models.folders.get(shape.id, ""), []).append(shape)

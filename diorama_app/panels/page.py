@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 
 import viser
 
+from diorama_app.panels.fields import PageScript
 from diorama_app.session.client import Client
 from diorama_app.strings import _
 from diorama_app.web.html import Action, LiveHtml, run_once
@@ -19,13 +20,11 @@ class Address:
     """The address of one page."""
 
     def __init__(self, gui: viser.GuiApi) -> None:
-        self._script = gui.add_html("")
-        self._moves = 0
+        self._script = PageScript(gui)
 
     def go_to(self, project: str) -> None:
         """Take the page to a project, by the name of its folder; Back leads here again."""
-        self._moves += 1
-        self._script.content = run_once(f"window.__dioGoTo({json.dumps(project)}); /* {self._moves} */")
+        self._script.run(f"window.__dioGoTo({json.dumps(project)});", again=True)
 
 
 STORED_AS = "diorama-tabs"
@@ -96,19 +95,14 @@ class Tabs:
     """The tabs of one page."""
 
     def __init__(self, gui: viser.GuiApi, tabs: Sequence[str]) -> None:
-        """Open the tabs that were open here the last time, and note which are from now on.
-
-        Args:
-            gui: the page.
-            tabs: names of all tabs, from left to right.
-        """
+        """Open the tabs, named from left to right, that were open the last time, and note which are from now on."""
         gui.add_html(run_once(_KEEPER % (json.dumps(list(map(_, tabs))), json.dumps(STORED_AS), TRIES)))
-        self._opener = gui.add_html("")
+        self._opener = PageScript(gui)
 
     def open(self, name: str) -> None:
         """Bring a tab to the front."""
         opening = f"window.__dioOpenTab && window.__dioOpenTab({json.dumps(_(name))}, {next(_REQUESTS)});"
-        self._opener.content = run_once(opening)
+        self._opener.run(opening)
 
 
 class PanelLayout:

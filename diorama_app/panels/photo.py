@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import base64
-import io
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-import numpy as np
 import viser
-from jaxtyping import UInt8
-from PIL import Image
 
 from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import GO_COLOUR, UploadField, enable, on_change, on_press, show_if, show_value
-from diorama_app.panels.input_questions import ask_depth
+from diorama_app.panels.messages import ask_depth
 from diorama_app.panels.photo_bar import photo_bar
 from diorama_app.panels.photo_boxes import PhotoBoxes, box_list
 from diorama_app.projects.begin import begin_project, keep_given
+from diorama_app.projects.pictures import encode_picture, jpeg_uri
 from diorama_app.projects.reading_again import upload_again, with_depth
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction import build_job as work
@@ -129,7 +125,7 @@ class PhotoPanel:
             check_all_round(upload)
             self.begin(replace(upload, sphere=True))
 
-        self._session.reader.read(upload, client.id, client.post, finish, ask)
+        self._session.reader.read(upload, client, finish, ask)
         self._announce(upload.name, upload.photo)
 
     def add(self, new: Mapping[Sort, Source]) -> None:
@@ -213,7 +209,7 @@ class PhotoPanel:
                 raise unknown
             ask_depth(client, unknown, lambda chosen: self._read_again(label, new, chosen, turn=turn, bend=bend))
 
-        session.reader.read(upload, client.id, client.post, finish, ask)
+        session.reader.read(upload, client, finish, ask)
 
     def _camera_given(self, value: str) -> None:
         def read() -> None:
@@ -298,7 +294,8 @@ class PhotoPanel:
         if self._client.view.canvas.is_open:
             return f"<p>{about}</p>"  # the photo itself is on the board
         if self._picture_of is not inputs.photo:
-            self._picture_of, self._picture = inputs.photo, _jpeg_uri(inputs.photo.rgb)
+            jpeg = encode_picture(reduce(inputs.photo.rgb, 480), "JPEG", quality=80)
+            self._picture_of, self._picture = inputs.photo, jpeg_uri(jpeg)
         return (
             f'<img class="photo" alt="{text(_("The photo"))}" src="{self._picture}"'
             f' title="{text(_("Drop another photo here to start another project"))}">'
@@ -339,9 +336,3 @@ def _intrinsics(given: str) -> tuple[float, float, float, float] | None:
         message = _("the camera “{words}” is not four numbers; give fx,fy,cx,cy in pixels").format(words=given[:40])
         raise InputError(message) from error
     return fx, fy, cx, cy
-
-
-def _jpeg_uri(rgb: UInt8[np.ndarray, "h w 3"]) -> str:
-    buffer = io.BytesIO()
-    Image.fromarray(reduce(rgb, 480)).save(buffer, "JPEG", quality=80)
-    return "data:image/jpeg;base64," + base64.b64encode(buffer.getvalue()).decode()

@@ -14,18 +14,11 @@ from diorama_core.perception.inputs.boxes.agreement import is_upside_down
 
 
 def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
-    """What can be done with the chosen photo now, in one row where there is room.
-
-    Args:
-        client: whose photo it is.
-        inputs: the photo with its boxes.
-        proposals: how many proposals lie on it.
-    """
+    """What can be done now with the chosen photo, on which so many proposals lie, in one row where there is room."""
     scene, further, busy = client.session.scene, client.further_photo, client.session.jobs.status is not None
     if builds_unasked(client.session):
         hint = _("Stop building, and draw boxes around the furniture yourself")
-        mine, message = button(_("Mark it myself"), "by hand", title=hint), _("Building what was found in the photo.")
-        return f'<div class="bar"><span class="lead">{text(message)}</span>{mine}</div>'
+        return _note(_("Building what was found in the photo."), button(_("Mark it myself"), "by hand", title=hint))
     pieces = []
     if proposals:
         pieces.append(f'<span class="lead">{text(plural("{count} proposal", "{count} proposals", proposals))}</span>')
@@ -58,14 +51,17 @@ def photo_bar(client: Client, inputs: Inputs, proposals: int) -> str:
 def upside_down_note() -> str:
     """What is said of a photo whose things lie as in one that was turned by 180 degrees, and the button to turn it."""
     turn = button(_("Turn photo"), "turn", title=_("Turn the photo by 180 degrees, with its boxes, depth and masks"))
-    return f'<div class="bar"><span class="lead">{text(_("The photo seems to be upside down."))}</span>{turn}</div>'
+    return _note(_("The photo seems to be upside down."), turn)
 
 
 def straightening_note() -> str:
     """What is said of a photo that was straightened by its own lines, and the button that undoes it."""
     back = button(_("Undo straightening"), "bend", title=_("Use the photo as it is in its file"))
-    message = _("The photo was straightened because its lens bends straight lines.")
-    return f'<div class="bar"><span class="lead">{text(message)}</span>{back}</div>'
+    return _note(_("The photo was straightened because its lens bends straight lines."), back)
+
+
+def _note(message: str, its_button: str) -> str:
+    return f'<div class="bar"><span class="lead">{text(message)}</span>{its_button}</div>'
 
 
 def _may_be_bent_back(client: Client, inputs: Inputs) -> bool:

@@ -35,12 +35,7 @@ NAMES = (*COMMON, *sorted({c.name for c in CATEGORIES} - {*COMMON, "object"}))
 
 
 class PhotoBoxes:
-    """Boxes of the open photo, on the canvas and in the panel.
-
-    Args:
-        client: whose canvas and selection.
-        refresh: draws the panel anew.
-    """
+    """Boxes of the open photo, on the canvas and in the panel, which `refresh` draws anew."""
 
     def __init__(self, client: Client, refresh: Callable[[], None]) -> None:
         self._client, self._refresh = client, refresh

@@ -6,6 +6,7 @@ import numpy as np
 import viser
 
 from diorama_app.commands.camera_presets import Views
+from diorama_app.panels.fields import read_number
 from diorama_app.reconstruction.camera_correction import (
     camera_height_m,
     check_angles,
@@ -19,7 +20,6 @@ from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
 from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, text
-from diorama_core.errors import InputError
 from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.scene.types import Camera
 
@@ -36,7 +36,7 @@ class PhotoCameraPanel:
     def __init__(self, gui: viser.GuiApi, client: Client, views: Views) -> None:
         self._client = client
         self._views = views
-        self._html = LiveHtml(gui, self._act)
+        self._html = LiveHtml(gui, lambda action: client.post(lambda: self._do(action)))
         self._typed: dict[str, float] = {}
         self._of: Camera | None = None
         self._figures: dict[str, float] = {}
@@ -81,16 +81,14 @@ class PhotoCameraPanel:
             f'{explained}<table>{rows}</table><div class="bar tight">{again}{back}</div></details>'
         )
 
-    def _act(self, action: Action) -> None:
-        self._client.post(lambda: self._do(action))
-
     def _do(self, action: Action) -> None:
         client = self._client
         if action.do == "height":
             self._used = True
             set_camera_height(client, parse_length(action.pair[1], client.preferences.unit))
         elif action.do in FIELDS:
-            self._try({**self._typed, action.do: _degrees(action.pair[1])})
+            degrees = read_number(action.pair[1], N_("“{words}” is not an angle; write for example 62.5"))
+            self._try({**self._typed, action.do: degrees})
         elif action.do == "back":
             self._typed, client.trial_camera = {}, None
             client.refresh()
@@ -125,13 +123,6 @@ def figures(camera: Camera) -> dict[str, float]:
     angles = (camera.intrinsics.horizontal_fov_rad, camera_attitude.pitch_rad, camera_attitude.roll_rad)
     # Adding zero takes the sign off a rounded minus nothing.
     return dict(zip(FIELDS, (round(float(np.degrees(a)), 6) + 0.0 for a in angles), strict=True))
-
-
-def _degrees(words: str) -> float:
-    try:
-        return float(words.replace("°", "").replace(",", ".").strip())
-    except ValueError as error:
-        raise InputError(_("“{words}” is not an angle; write for example 62.5").format(words=words[:20])) from error
 
 
 def _row(name: str, do: str, value: str, hint: str) -> str:

@@ -24,7 +24,7 @@ class PhotoCorrection:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._html = LiveHtml(gui, self._act)
+        self._html = LiveHtml(gui, lambda action: client.post(lambda: self._do(action)))
         self._outline: MaskDraft | None = None
         self._of: str | None = None
 
@@ -59,9 +59,6 @@ class PhotoCorrection:
                 + button(_("Fix outline"), "outline", title=_("Correct the outline by clicks in the photo"))
                 + "</div>"
             )
-
-    def _act(self, action: Action) -> None:
-        self._client.post(lambda: self._do(action))
 
     def _do(self, action: Action) -> None:
         client = self._client

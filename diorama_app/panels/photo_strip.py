@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import base64
-import io
-
 import numpy as np
 import viser
 from jaxtyping import UInt8
-from PIL import Image
 
 from diorama_app.commands.camera_presets import Views
 from diorama_app.panels.fields import UploadField
+from diorama_app.projects.pictures import encode_picture, jpeg_uri
 from diorama_app.projects.uploads import Upload
 from diorama_app.reconstruction.photo_joining import awaits_photo, missing_for_joining, take_out, take_photo
 from diorama_app.session.client import Client
@@ -75,9 +72,7 @@ class PhotoStrip:
         """A small picture, encoded once for every photo."""
         known = self._pictures.get(id(rgb))
         if known is None or known[0] is not rgb:
-            buffer = io.BytesIO()
-            Image.fromarray(reduce(rgb, TILE_PX)).save(buffer, "JPEG", quality=75)
-            uri = "data:image/jpeg;base64," + base64.b64encode(buffer.getvalue()).decode()
+            uri = jpeg_uri(encode_picture(reduce(rgb, TILE_PX), "JPEG", quality=75))
             if len(self._pictures) >= KEPT:
                 self._pictures.clear()
             known = self._pictures[id(rgb)] = (rgb, uri)
@@ -85,9 +80,7 @@ class PhotoStrip:
 
     def _receive(self, name: str, content: bytes) -> None:
         client = self._client
-        client.session.reader.read(
-            Upload(content, name), client.id, client.post, lambda read: take_photo(client, name, read.inputs)
-        )
+        client.session.reader.read(Upload(content, name), client, lambda read: take_photo(client, name, read.inputs))
 
     def _act(self, action: Action) -> None:
         def do() -> None:

@@ -15,11 +15,12 @@ import viser
 
 from diorama_app.commands import edit as editing
 from diorama_app.commands.insert import put_opening
+from diorama_app.panels.fields import PageScript
 from diorama_app.panels.plan_picture import PicturesBelow
 from diorama_app.session.client import Client
 from diorama_app.session.units import Unit, format_length, parse_length
 from diorama_app.strings import _, plural
-from diorama_app.web.html import Action, LiveHtml, run_once
+from diorama_app.web.html import Action, LiveHtml
 from diorama_core.editing.homes import draw_room_of_home
 from diorama_core.editing.plan_edits import corners, move_corner, set_wall_length, split_wall, wall_feet
 from diorama_core.errors import EditRefused, LibraryError
@@ -87,12 +88,11 @@ class Plan:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._told = ""
         self._outlines = ShapeOutlines(client.session.library)
         self._sender = LiveHtml(gui, lambda action: client.post(lambda: self._do(action)))
         self._sender.show(SEND)
         self._picture = PicturesBelow(gui, client, self._everything)
-        self._teller = gui.add_html("")
+        self._script = PageScript(gui)
         self._tell("null")
 
     def refresh(self) -> None:
@@ -124,9 +124,7 @@ class Plan:
         return _bounds(room_lines(scene.architecture.planes, visible, scene), [o.corners_world[:, :2] for o in visible])
 
     def _tell(self, told: str) -> None:
-        if told != self._told:
-            self._told = told
-            self._teller.content = run_once(f"window.__dioPlan.told({told})")
+        self._script.run(f"window.__dioPlan.told({told})")
 
     def _plan_data(self, scene: Scene) -> dict[str, Any]:
         client = self._client
@@ -211,7 +209,7 @@ class Plan:
         except (KeyError, TypeError, IndexError, json.JSONDecodeError) as error:
             raise EditRefused("that is no longer in the plan") from error
         finally:
-            self._told = ""  # what was dragged goes where the document says
+            self._script.forget()  # what was dragged goes where the document says
             self.refresh()
 
     def _select(self, object_id: str | None, *, add: bool) -> None:

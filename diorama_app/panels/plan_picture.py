@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import threading
 from typing import Any
@@ -12,7 +11,9 @@ import viser
 from jaxtyping import UInt8
 
 from diorama_app.panels.fields import add_hidden_upload
+from diorama_app.projects.pictures import jpeg_uri
 from diorama_app.session.client import Client
+from diorama_app.session.reading import raising
 from diorama_app.strings import _
 from diorama_app.web.html import run_once
 from diorama_core.errors import EditRefused
@@ -31,13 +32,7 @@ class PicturesBelow:
     """Tells the page about the picture of the open project's plan, and takes another one."""
 
     def __init__(self, gui: viser.GuiApi, client: Client, bounds: Any) -> None:
-        """Tell the page nothing yet.
-
-        Args:
-            gui: the page.
-            client: the owner.
-            bounds: gives least and largest x and y of what the plan shows.
-        """
+        """Tell the page nothing yet; `bounds` gives least and largest x and y of what the plan shows."""
         self._client, self._bounds = client, bounds
         self._told: tuple[object, ...] = ()
         self._uuid = add_hidden_upload(
@@ -56,8 +51,8 @@ class PicturesBelow:
         about: dict[str, Any] = {"upload": self._uuid, "picture": None}
         if stored is not None:
             jpeg, picture = stored
-            url = "data:image/jpeg;base64," + base64.b64encode(jpeg).decode()
-            about["picture"] = {"url": url, "size": picture.size, "at": picture.at, "metres": picture.metres}
+            place = {"size": picture.size, "at": picture.at, "metres": picture.metres}
+            about["picture"] = {"url": jpeg_uri(jpeg), **place}
         self._teller.content = run_once(f"window.__dioPlanTools.given({json.dumps(about)})")
 
     def place(self, place: Any) -> None:
@@ -92,7 +87,7 @@ class PicturesBelow:
             try:
                 rgb = process.call(name, plan_page, content, name)
             except Exception as error:  # raised again on the UI thread, for whoever uploaded
-                client.post(_raising(error))
+                client.post(raising(error))
                 return
             finally:
                 process.close()
@@ -110,10 +105,3 @@ class PicturesBelow:
         save_plan_picture(project, rgb, PlanPicture((width, height), ((x0 + x1) / 2, (y0 + y1) / 2), metres))
         for client in self._client.session.clients.values():
             client.refresh()
-
-
-def _raising(error: Exception) -> Any:
-    def fail() -> None:
-        raise error
-
-    return fail

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import io
 import time
 from collections.abc import Callable
 from functools import lru_cache, partial
@@ -16,6 +14,7 @@ from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.fields import GO_COLOUR, QUIET_COLOUR, UploadField, enable, on_press
 from diorama_app.projects import manage as project_care
 from diorama_app.projects.packing import SUFFIX
+from diorama_app.projects.pictures import encode_picture, jpeg_uri
 from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
@@ -81,8 +80,7 @@ class Projects:
         return f"<h4>{text(_('Recent projects'))}</h4>{rows}" if rows else ""
 
     def _row(self, folder: Path) -> str:
-        session = self._client.session
-        current = session.project is not None and session.project.folder.resolve() == folder.resolve()
+        current = is_open(self._client.session.project, folder)
         when = time.strftime("%Y-%m-%d, %H:%M", time.localtime(project_care.mtime(folder)))
         name = text(project_care.name_of(folder))
         on = "on" if current else ""
@@ -114,18 +112,28 @@ class Projects:
             session.textures = {**session.textures, **session.project.textures(scene)}
             session.commit(_("restore an earlier version"), scene, by=client, selection=())
         elif action.do == "open":
-            self._visit(action.arg)
+            visit_listed(client, action.arg)
         session.glances.forget()
         session.refresh_panels()
 
-    def _visit(self, name: str) -> None:
-        session = self._client.session
-        # Only a name that is listed: the page must not reach outside the projects' folder.
-        folder = project_care.find_project(session.projects_dir, name)
-        if folder is None:
-            raise EditRefused("that project no longer exists")
-        project = Project.open(folder)
-        session.visit(self._client, project, _("Opened {name}.").format(name=project.name))
+
+def listed_folder(session: EditorSession, address: str) -> Path:
+    """The folder of a project that is listed: a page must not reach outside the projects' folder."""
+    folder = project_care.find_project(session.projects_dir, address)
+    if folder is None:
+        raise EditRefused("that project no longer exists")
+    return folder
+
+
+def visit_listed(client: Client, address: str) -> None:
+    """Go to a project that is listed."""
+    project = Project.open(listed_folder(client.session, address))
+    client.session.visit(client, project, _("Opened {name}.").format(name=project.name))
+
+
+def is_open(project: Project | None, folder: Path) -> bool:
+    """Whether the open project is in this folder."""
+    return project is not None and project.folder.resolve() == folder.resolve()
 
 
 def _name_and_versions(project: Project) -> tuple[str, str]:
@@ -160,7 +168,4 @@ def _small_picture(path: Path, written_ns: int) -> str:
         return ""  # the project itself says what is wrong when it is opened
     image = Image.fromarray(picture)
     image.thumbnail(PICTURE_SIZE)
-    buffer = io.BytesIO()
-    image.save(buffer, "JPEG", quality=75)
-    uri = base64.b64encode(buffer.getvalue()).decode()
-    return f'<img alt="" class="small" src="data:image/jpeg;base64,{uri}">'
+    return f'<img alt="" class="small" src="{jpeg_uri(encode_picture(image, "JPEG", quality=75))}">'

@@ -8,7 +8,7 @@ import numpy as np
 import viser
 
 from diorama_app.commands import edit as editing
-from diorama_app.panels.fields import on_change, show_if, show_value
+from diorama_app.panels.fields import on_change, read_number, show_if, show_value
 from diorama_app.session.client import Client
 from diorama_app.session.units import UNITS, Unit, format_length, parse_length, to_unit
 from diorama_app.strings import N_, _
@@ -16,7 +16,6 @@ from diorama_app.web.html import Action, LiveHtml, button, fold_button, library_
 from diorama_core.arrangement.explain import reason_text, strongest
 from diorama_core.artefacts import Reason
 from diorama_core.editing.clearances import Clearance, clearances
-from diorama_core.errors import InputError
 from diorama_core.scene.types import Finish, MaterialSource, SceneObject
 
 SIZE_ORDER = [1, 0, 2]
@@ -153,7 +152,8 @@ class Properties:
         item = client.session.scene.object(object_id)
         try:
             if do == "turn":
-                editing.set_yaw(client, object_id, _degrees(words))
+                degrees = read_number(words, N_("“{words}” is not an angle; write for example 90"))
+                editing.set_yaw(client, object_id, degrees)
             elif do == "gap":
                 editing.set_distance(client, object_id, axis, parse_length(words, client.preferences.unit))
             elif axis in ("0", "1", "2"):
@@ -231,10 +231,8 @@ def _opening(item: SceneObject) -> str:
 
 
 def _share(words: str) -> float:
-    try:
-        return float(np.clip(float(words), 0.0, 100.0)) / 100.0
-    except ValueError as error:
-        raise InputError(_("“{words}” is not a percentage; write for example 50").format(words=words[:20])) from error
+    percent = read_number(words, N_("“{words}” is not a percentage; write for example 50"))
+    return float(np.clip(percent, 0.0, 100.0)) / 100.0
 
 
 def _heading(name: str, hint: str, unit: Unit) -> str:
@@ -247,10 +245,3 @@ def _grid(cells: str) -> str:
 
 def _length(metres: float, unit: Unit) -> str:
     return format_length(metres, unit) if unit == "ft-in" else f"{to_unit(metres, unit) + 0.0:g}"
-
-
-def _degrees(words: str) -> float:
-    try:
-        return float(words.replace("°", "").replace(",", ".").strip())
-    except ValueError as error:
-        raise InputError(_("“{words}” is not an angle; write for example 90").format(words=words[:20])) from error

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import io
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +12,7 @@ from PIL import Image, ImageDraw
 from diorama_app.commands import review
 from diorama_app.commands.measure import start_measuring
 from diorama_app.panels.fields import on_change, show_if, show_value
+from diorama_app.projects.pictures import encode_picture, jpeg_uri
 from diorama_app.reconstruction.object_correction import add_from_photo
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
@@ -141,10 +140,8 @@ class Review:
         paint: Paint = (item.colour, item.finish)
 
         def draw() -> bytes:
-            buffer = io.BytesIO()
             rgba = render_shape(session.library, item.shape_id, (SIDE_PX, SIDE_PX), view, paint=paint)
-            Image.fromarray(rgba).save(buffer, "PNG")
-            return buffer.getvalue()
+            return encode_picture(rgba, "PNG")
 
         return session.thumbnails.picture_html(f"{item.shape_id} {view} {paint}", draw)
 
@@ -154,11 +151,8 @@ class Review:
         box = _box_of(question) if item is None else item.box_px
         if inputs is None or box is None:
             return ""
-        picture = crop_around(inputs.photo.rgb, box)
-        buffer = io.BytesIO()
-        picture.save(buffer, "JPEG", quality=85)
-        uri = base64.b64encode(buffer.getvalue()).decode()
-        return f'<img class="crop" alt="{text(_(question.sentence))}" src="data:image/jpeg;base64,{uri}">'
+        uri = jpeg_uri(encode_picture(crop_around(inputs.photo.rgb, box), "JPEG", quality=85))
+        return f'<img class="crop" alt="{text(_(question.sentence))}" src="{uri}">'
 
     def _act(self, action: Action) -> None:
         client = self._client

@@ -6,22 +6,23 @@ whenever it is asked for. `static/start_page.js` asks for it, `static/tour.js` s
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Callable
 from functools import cache
 
 import viser
 
-from diorama_app.panels.fields import add_hidden_upload
-from diorama_app.projects.manage import address_of, find_project, name_of, recent_projects
+from diorama_app.panels.fields import PageScript, add_hidden_upload
+from diorama_app.panels.projects import listed_folder, visit_listed
+from diorama_app.projects.manage import address_of, name_of, recent_projects
+from diorama_app.projects.pictures import jpeg_uri
 from diorama_app.reconstruction.opening_job import open_file
 from diorama_app.reconstruction.starting_rooms import LIVING_ROOM, open_example, start_empty_room
 from diorama_app.reconstruction.text_to_scene import describe_room
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length, parse_length
 from diorama_app.strings import N_, _
-from diorama_app.web.html import Action, LiveHtml, button, run_once, text
-from diorama_core.errors import EditRefused, InputError
+from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_core.errors import InputError
 from diorama_core.io.assets import asset
 from diorama_core.project.storage import Project
 
@@ -42,13 +43,7 @@ class StartPage:
     """Drawn while it is open."""
 
     def __init__(self, gui: viser.GuiApi, client: Client, take_photo: Callable[[str, bytes], None]) -> None:
-        """Put the start page behind a hidden button that the page presses by itself.
-
-        Args:
-            gui: the page.
-            client: the owner.
-            take_photo: begins a project with a photo (its file's name and content).
-        """
+        """Put the start page behind a hidden button that the page presses by itself."""
         self._client = client
         self._open = False
         self._words = ""
@@ -59,8 +54,7 @@ class StartPage:
         self._photo_field = add_hidden_upload(gui, client, _("Start with a photo"), take_photo)
         self._file_field = add_hidden_upload(gui, client, _("Start with a file"), self._take_file)
         self._opener = LiveHtml(gui, self._act)
-        self._tour = gui.add_html("")
-        self._tours = 0
+        self._tour = PageScript(gui)
         self._html = LiveHtml(gui, self._act, floating="dio-start")
         client.open_start = self.open
         client.start_tour = self.start_tour
@@ -92,8 +86,7 @@ class StartPage:
 
     def start_tour(self) -> None:
         """Show the page's parts one by one."""
-        self._tours += 1
-        self._tour.content = run_once(f"window.__dioTour(); /* {self._tours} */")
+        self._tour.run("window.__dioTour();", again=True)
 
     def _take_file(self, name: str, content: bytes) -> None:
         open_file(self._client, name, content)
@@ -132,7 +125,9 @@ class StartPage:
         elif action.do == "projects":
             client.open_projects()
         elif action.do == "project":
-            self._visit(action.arg)
+            listed_folder(client.session, action.arg)  # refused while the page is still open
+            self.close()
+            visit_listed(client, action.arg)
 
     def _enter(self, which: str, words: str) -> None:
         if which not in LENGTHS:
@@ -149,16 +144,6 @@ class StartPage:
         self._lengths_m = (width, depth, height)
         if self._refused.pop(which, None) is not None:
             self._html.show(self._page(), again=True)
-
-    def _visit(self, name: str) -> None:
-        session = self._client.session
-        # Only a name that is listed: the page must not reach outside the projects' folder.
-        folder = find_project(session.projects_dir, name)
-        if folder is None:
-            raise EditRefused("that project no longer exists")
-        self.close()
-        project = Project.open(folder)
-        session.visit(self._client, project, _("Opened {name}.").format(name=project.name))
 
     def _page(self) -> str:
         unit = self._client.preferences.unit
@@ -211,4 +196,4 @@ class StartPage:
 @cache
 def _picture(kind: str) -> str:
     """A small picture of an example, as it lies beside the program."""
-    return "data:image/jpeg;base64," + base64.b64encode((PICTURES / f"{kind}.jpg").read_bytes()).decode()
+    return jpeg_uri((PICTURES / f"{kind}.jpg").read_bytes())

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import io
 from dataclasses import replace
 from functools import cache
 from typing import get_args
@@ -14,9 +12,11 @@ import viser
 from diorama_app.commands.edit import supporter_name
 from diorama_app.commands.insert import put_opening
 from diorama_app.commands.room_looks import finish_surfaces
+from diorama_app.panels.fields import read_number
+from diorama_app.projects.pictures import encode_picture, jpeg_uri
 from diorama_app.session.client import Client
 from diorama_app.session.units import format_length
-from diorama_app.strings import _
+from diorama_app.strings import N_, _
 from diorama_app.web.html import Action, LiveHtml, button, text
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.geometry.openings import OPENING_CATEGORIES
@@ -192,10 +192,8 @@ def _sample_styles() -> str:
     rules = []
     for pattern in KINDS:
         picture = Image.fromarray(finish_picture(usual_finish(pattern), "floor", SAMPLE_M)).resize(SAMPLE_PX)
-        buffer = io.BytesIO()
-        picture.save(buffer, "JPEG", quality=80)
-        uri = base64.b64encode(buffer.getvalue()).decode()
-        rules.append(f".dio .sample.{pattern} {{ background-image: url(data:image/jpeg;base64,{uri}) }}")
+        uri = jpeg_uri(encode_picture(picture, "JPEG", quality=80))
+        rules.append(f".dio .sample.{pattern} {{ background-image: url({uri}) }}")
     return f"<style>{''.join(rules)}</style>"
 
 
@@ -215,10 +213,7 @@ def _colour(words: str) -> tuple[float, float, float]:
 
 
 def _number(words: str) -> float:
-    try:
-        number = float(words.replace(",", ".").strip().rstrip("%°"))
-    except ValueError as error:
-        raise InputError(_("“{words}” is not a number; write for example 100").format(words=words[:20])) from error
+    number = read_number(words, N_("“{words}” is not a number; write for example 100"))
     if not np.isfinite(number):
         raise InputError("the number is not finite; write for example 100")
     return number

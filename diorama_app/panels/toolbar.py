@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
 import viser
 
 from diorama_app.commands.registry import CommandTable
+from diorama_app.panels.fields import PageScript
 from diorama_app.session.client import Client, Measuring, Playing
 from diorama_app.strings import N_, _
-from diorama_app.web.html import Action, LiveHtml, button, run_once, text
-
-if TYPE_CHECKING:
-    from diorama_core.editing.walking import WalkableFloor  # shapely; the page opens without it
+from diorama_app.web.html import Action, LiveHtml, button, text
 
 ICONS = {
     "undo": '<path d="M9 5 4 10l5 5M4 10h10a6 6 0 0 1 0 12h-3"/>',
@@ -43,8 +40,8 @@ class Toolbar:
     def __init__(self, gui: viser.GuiApi, client: Client, commands: CommandTable) -> None:
         self._client, self._commands = client, commands
         self._html = LiveHtml(gui, self._act, floating="dio-toolbar")
-        self._walk, self._walks = gui.add_html(""), 0
-        client.start_walk = self._start_walk
+        walk = PageScript(gui)
+        client.start_walk = lambda floor: walk.run(f"window.__dioWalk.begin({floor.json});", again=True)
 
     def refresh(self) -> None:
         """Draw the buttons as the history allows and the settings say."""
@@ -67,10 +64,6 @@ class Toolbar:
             + f'<button type="button" data-menu="1" aria-haspopup="true" aria-expanded="false" aria-label="{more}" '
             f'title="{more}">{_icon("more")}</button></div></div>{self._menu()}'
         )
-
-    def _start_walk(self, walk: WalkableFloor) -> None:
-        self._walks += 1
-        self._walk.content = run_once(f"window.__dioWalk.begin({walk.json}); /* {self._walks} */")
 
     def _menu(self) -> str:
         moved = "".join(self._item(i) for ids in SPARE for i in ids)

@@ -9,7 +9,7 @@ from diorama_app.reconstruction.build_job import build, forget_build
 from diorama_app.session.client import Client
 from diorama_app.session.recovery import Unsaved
 from diorama_app.strings import _
-from diorama_app.web.html import Action, LiveHtml, button, text
+from diorama_app.web.html import LiveHtml, button, text
 from diorama_core.project.storage import Project
 
 
@@ -18,7 +18,7 @@ class UnsavedChanges:
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._html = LiveHtml(gui, self._act)
+        self._html = LiveHtml(gui, lambda action: client.post(lambda: self._do(action.do)))
         self._of: Project | None = None
         self._found: Unsaved | None = None
 
@@ -33,11 +33,10 @@ class UnsavedChanges:
     def _trouble(self) -> str:
         session = self._client.session
         if session.read_only:
-            return (
-                f'<div class="card warn">{text(_(session.read_only))}<div class="bar tight" style="margin:6px 0 0 0">'
-                + button(_("Work on a copy"), "copy", title=_("Create a new project from the current state"))
-                + button(_("Try again"), "again", title=_("Close the project elsewhere first"))
-                + "</div></div>"
+            return _card(
+                _(session.read_only),
+                button(_("Work on a copy"), "copy", title=_("Create a new project from the current state")),
+                button(_("Try again"), "again", title=_("Close the project elsewhere first")),
             )
         return f'<div class="card warn">{text(_(session.autosave.trouble))}</div>' if session.autosave.trouble else ""
 
@@ -46,35 +45,27 @@ class UnsavedChanges:
         if unsaved is None or not unsaved.path.exists():
             return ""
         message = _("Changes of {time} were not saved when Diorama ended.").format(time=unsaved.when)
-        return (
-            f'<div class="card warn">{text(message)}'
-            f'<div class="bar tight" style="margin:6px 0 0 0">'
-            + button(_("Restore unsaved changes"), "restore", title=_("One undo step"))
-            + button(_("Discard"), "discard", title=_("Delete these changes permanently"))
-            + "</div></div>"
+        return _card(
+            message,
+            button(_("Restore unsaved changes"), "restore", title=_("One undo step")),
+            button(_("Discard"), "discard", title=_("Delete these changes permanently")),
         )
 
     def _build_card(self) -> str:
         session = self._client.session
         if not session.interrupted or session.jobs.status is not None:
             return ""
-        return (
-            f'<div class="card warn">{text(_("Diorama ended while this scene was being built."))}'
-            '<div class="bar tight" style="margin:6px 0 0 0">'
-            + button(_("Continue building"), "build", title=_("Continue where the build stopped"))
-            + button(_("Not now"), "no build", title=_("Build it later with “Build scene”"))
-            + "</div></div>"
+        return _card(
+            _("Diorama ended while this scene was being built."),
+            button(_("Continue building"), "build", title=_("Continue where the build stopped")),
+            button(_("Not now"), "no build", title=_("Build it later with “Build scene”")),
         )
-
-    def _act(self, action: Action) -> None:
-        self._client.post(lambda: self._do(action.do))
 
     def _do(self, what: str) -> None:
         session, unsaved = self._client.session, self._found
         if what in ("copy", "again") and session.project is not None:
-            copied = what == "copy"
             folder = session.project.folder
-            if copied:
+            if what == "copy":
                 session.visit(self._client, duplicate_project(folder, session.projects_dir), "")
             else:
                 session.open_project(Project.open(folder))
@@ -100,3 +91,8 @@ class UnsavedChanges:
             session.interrupted = False
             forget_build(session.project)
         session.refresh_panels()
+
+
+def _card(message: str, *buttons: str) -> str:
+    bar = f'<div class="bar tight" style="margin:6px 0 0 0">{"".join(buttons)}</div>'
+    return f'<div class="card warn">{text(message)}{bar}</div>'

@@ -12,9 +12,9 @@ from typing import Any
 
 import viser
 
+from diorama_app.panels.fields import PageScript
 from diorama_app.session.client import Client
 from diorama_app.viewport.scene_view import MESH_NAMES
-from diorama_app.web.html import run_once
 from diorama_core.scene.types import Plane, Scene
 
 FADE_MS = 200
@@ -25,16 +25,13 @@ HIDDEN = ([0.0, 0.0, 0.0], 1.0, 0.0)
 PHOTO_NEAR_M = 0.03
 """Nearer to the photo's camera the model is compared with the photo, and nothing is laid over it."""
 
-_TOLD = "window.__dioWalls.told(%s)"
-
 
 class Walls:
     """Tells one page where the walls are."""
 
     def __init__(self, gui: viser.GuiApi, client: Client) -> None:
         self._client = client
-        self._told = ""
-        self._html = gui.add_html("")
+        self._script = PageScript(gui)
 
     def refresh(self) -> None:
         """Tell the page what differs from what it knows."""
@@ -51,9 +48,7 @@ class Walls:
             gone = {view.node_name(o.id) for o in scene.objects if not shown.has_object(o.id)}
             about["hung"] = [row for row in about["hung"] if row[0] not in gone] + [[name, *HIDDEN] for name in gone]
         told = json.dumps({**about, "versions": MESH_NAMES}, separators=(",", ":"))
-        if told != self._told:
-            self._told = told
-            self._html.content = run_once(_TOLD % told)
+        self._script.run(f"window.__dioWalls.told({told})")
 
 
 def what_fades(

@@ -9,10 +9,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
-
 from diorama_app.projects.folder_photos import FolderPhoto
 from diorama_app.projects.options import BuildOptions, build_files
+from diorama_app.projects.pictures import encode_picture
 from diorama_core.errors import DioramaError, ProjectError, SphericalPhotoError
 from diorama_core.io.atomic import write_atomically, write_json
 from diorama_core.io.bounded import read_json
@@ -131,17 +130,13 @@ def report_of(project: Path, key: str) -> dict[str, Any] | None:
 
 
 def _draw(room: Any, path: Path) -> None:
-    import io
-
     import diorama_core as diorama
 
     width, height = room.inputs.photo.width, room.inputs.photo.height
     scale = min(1.0, PICTURE_WIDTH_PX / width)
     rgb = diorama.render(room, view="photo", size=(max(round(width * scale), 16), max(round(height * scale), 16)))
-    content = io.BytesIO()
-    Image.fromarray(rgb).save(content, "JPEG", quality=88)
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_atomically(path, content.getvalue(), error=ProjectError)
+    write_atomically(path, encode_picture(rgb, "JPEG", quality=88), error=ProjectError)
 
 
 def _reason(piece: FinishedItem[FolderPhoto, PhotoResult]) -> str:

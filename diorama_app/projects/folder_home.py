@@ -73,11 +73,6 @@ def join_rooms(rooms: Mapping[str, Path], doors: Sequence[SharedDoor], output: P
 
     A home that is there already gets the new scene; its earlier one is among its backups.
 
-    Args:
-        rooms: projects by the rooms' names.
-        doors: at which they meet.
-        output: folder of the home's project.
-
     Raises:
         InputError: a door is of a room that is not there, or rooms are left that no door leads to.
         EditRefused: a room has no such door, or rooms would be in one another's place.

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import base64
 import html
-import io
 import os
 from collections import Counter
 from collections.abc import Sequence
@@ -14,6 +12,7 @@ from urllib.parse import quote
 from PIL import Image
 
 from diorama_app.projects.folder_build import PhotoResult
+from diorama_app.projects.pictures import encode_picture, jpeg_uri
 from diorama_core.errors import DioramaError, ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_picture
@@ -95,6 +94,4 @@ def _picture(path: Path, words: str) -> str:
     except DioramaError:
         return f'<p class="dim">{words} cannot be shown</p>'  # somebody removed it; the rest of the report stands
     picture.thumbnail((WIDTH_PX, 2 * WIDTH_PX))
-    content = io.BytesIO()
-    picture.save(content, "JPEG", quality=82)
-    return f'<img alt="{words}" src="data:image/jpeg;base64,{base64.b64encode(content.getvalue()).decode()}">'
+    return f'<img alt="{words}" src="{jpeg_uri(encode_picture(picture, "JPEG", quality=82))}">'

@@ -53,12 +53,9 @@ def is_packed(names: tuple[str, ...]) -> bool:
 
 
 def unpack_project(file: Path, projects_dir: Path, *, folder: Path | None = None) -> Project:
-    """A new project of a packed one. None is left behind when it would not open.
+    """A new project of a packed one, under its file's name (and a number where that is taken) or in a given folder.
 
-    Args:
-        file: the archive.
-        projects_dir: where the project goes, under its file's name and a number where that is taken.
-        folder: of the project itself, instead.
+    None is left behind when it would not open.
 
     Raises:
         InputError: it is no packed project, or damaged.

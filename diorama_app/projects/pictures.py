@@ -1,11 +1,15 @@
-"""Small pictures of projects: their scene as it is drawn, or their photo."""
+"""Pictures as files and inside pages, and small ones of projects: their scene as it is drawn, or their photo."""
 
 from __future__ import annotations
 
+import base64
 import hashlib
 import io
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+from jaxtyping import UInt8
 from PIL import Image
 
 from diorama_app.projects.manage import mtime
@@ -21,6 +25,19 @@ FROM_OUTSIDE = "orbit:20"
 MAX_PIXELS = 100_000_000
 
 
+def encode_picture(picture: Image.Image | UInt8[np.ndarray, "h w c"], kind: str, **options: Any) -> bytes:
+    """A picture as a file of a kind that Pillow writes, such as PNG, with its options."""
+    content = io.BytesIO()
+    image = picture if isinstance(picture, Image.Image) else Image.fromarray(picture)
+    image.save(content, kind, **options)
+    return content.getvalue()
+
+
+def jpeg_uri(jpeg: bytes) -> str:
+    """A JPEG as it stands inside a page."""
+    return "data:image/jpeg;base64," + base64.b64encode(jpeg).decode()
+
+
 def project_picture(folder: Path) -> bytes | None:
     """A PNG of a project, drawn once after each change and cached on disk; None where there is nothing to draw.
 
@@ -34,10 +51,9 @@ def project_picture(folder: Path) -> bytes | None:
     image = _draw(folder)
     if image is None:
         return None
-    buffer = io.BytesIO()
-    image.save(buffer, "PNG")
-    write_atomically(cached, buffer.getvalue(), error=ProjectError)
-    return buffer.getvalue()
+    content = encode_picture(image, "PNG")
+    write_atomically(cached, content, error=ProjectError)
+    return content
 
 
 def _draw(folder: Path) -> Image.Image | None:

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-from jaxtyping import UInt8
-from PIL import Image
-
 import diorama_core as diorama
 from diorama_app.projects.folder_photos import FolderPhoto
 from diorama_app.projects.options import BuildOptions, PhotoFiles
+from diorama_app.projects.pictures import encode_picture
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import InputError, ProjectError
 from diorama_core.io.atomic import write_atomically
@@ -156,15 +152,12 @@ def build_sphere_photo(files: PhotoFiles, options: BuildOptions, output: Path, p
             camera_height_m=files.camera_height_m,
         )  # fmt: skip
         notes = (*given.warnings, *built.room.notes)
-        rows = [(n, partial(_png, v.inputs.photo.rgb), v) for n, v in zip(built.names, built.views, strict=True)]
+        rows = [
+            (n, partial(encode_picture, v.inputs.photo.rgb, "PNG", compress_level=2), v)
+            for n, v in zip(built.names, built.views, strict=True)
+        ]
         _save(project, built.room, rows, built.views, built.further_photos(given.inputs), options.library, notes)
     return PosedBuild(built.room, project, built.names, notes)
-
-
-def _png(rgb: UInt8[np.ndarray, "h w 3"]) -> bytes:
-    buffer = io.BytesIO()
-    Image.fromarray(rgb).save(buffer, "PNG", compress_level=2)
-    return buffer.getvalue()
 
 
 def _pair(photos: Sequence[FolderPhoto], poses: Poses) -> tuple[list[tuple[FolderPhoto, PosedPhoto]], list[str]]:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
-from jaxtyping import UInt8
-from PIL import Image
-
 from diorama_app.projects.begin import depth_answer
+from diorama_app.projects.pictures import encode_picture
 from diorama_app.projects.uploads import Upload
 from diorama_core.artefacts import Inputs
 from diorama_core.editing.input_corrections import boxes_json
@@ -48,7 +44,7 @@ def upload_again(
     known = "depth" not in new or new["depth"].data == given.get("depth")
     reading = answer or (depth_answer(project) if known else DepthAnswer(""))
     return Upload(
-        given.get("photo") or _png(photo.rgb[::-1, ::-1] if photo.half_turned else photo.rgb),
+        given.get("photo") or encode_picture(photo.rgb[::-1, ::-1] if photo.half_turned else photo.rgb, "PNG"),
         photo.name,
         depth=new.get("depth") or _depth(project),
         boxes=new.get("boxes") or (boxes_json(before.boxes, photo) if before.boxes else None),
@@ -63,10 +59,6 @@ def upload_again(
 
 def with_depth(new: Mapping[Sort, Source], project: Project | None) -> dict[Sort, Source]:
     """New files, of which the confidence of a depth map is beside that map, which may be the project's.
-
-    Args:
-        new: files by their sort.
-        project: of the photo; None before there is one.
 
     Raises:
         InputError: there is confidence, but no depth.
@@ -87,9 +79,3 @@ def _depth(project: Project) -> Source | None:
         return None
     beside = (Source(given["confidence"], "its confidence"),) if "confidence" in given else ()
     return Source(given["depth"], "depth", companions=beside)
-
-
-def _png(rgb: UInt8[np.ndarray, "h w 3"]) -> bytes:
-    buffer = io.BytesIO()
-    Image.fromarray(rgb).save(buffer, "PNG")
-    return buffer.getvalue()

@@ -39,11 +39,7 @@ class Upload:
 
 
 def decode(upload: Upload, process: LimitedProcess) -> ReadInputs:
-    """The checked inputs of an upload.
-
-    Args:
-        upload: what came.
-        process: where its files are decoded.
+    """The checked inputs of an upload, decoded in a process.
 
     Raises:
         AmbiguousDepthError: the depth may be several things.

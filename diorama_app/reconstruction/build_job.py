@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from diorama_app.reconstruction.networks import can_find_furniture
 from diorama_app.session.project_contents import limit_notes
 from diorama_app.session.session import BUILDING, EditorSession
-from diorama_app.session.textures import Textures
+from diorama_app.session.shared_document import Textures
 from diorama_app.strings import N_, _, plural
 from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox, Reason
 from diorama_core.errors import DioramaError, EditRefused, InputError

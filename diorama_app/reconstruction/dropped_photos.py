@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from diorama_app.projects.begin import begin_project, fresh_folder, keep_given
-from diorama_app.projects.dropped import MAX_BYTES, DroppedPhoto, Reading
-from diorama_app.projects.dropped_files import files_of, upload_of
+from diorama_app.projects.dropped import MAX_BYTES, DroppedPhoto, Reading, files_of, upload_of
 from diorama_app.projects.folder_photos import FolderPhoto
 from diorama_app.projects.uploads import Upload, decode
 from diorama_app.session.client import Client

@@ -75,13 +75,7 @@ class Document:
         return beside if isinstance(beside, Photos) else Photos()
 
     def open(self, scene: Scene, inputs: Inputs | None = None, further: tuple[FurtherPhoto, ...] = ()) -> None:
-        """Replace the scene and clear the history.
-
-        Args:
-            scene: as it is.
-            inputs: of its build; None without a photo.
-            further: other photos of the room.
-        """
+        """Replace the scene and its photos, and clear the history."""
         self.history = History(entries=(Entry("open", scene, beside=Photos(inputs, further)),))
         self._opened, self._changes = secrets.token_hex(3), 0
 

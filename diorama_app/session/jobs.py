@@ -107,13 +107,7 @@ class Jobs:
         return self._status
 
     def start(self, kind: JobKind, title: str, work: Callable[[Progress], None]) -> None:
-        """Run `work` in the background; refused while another job runs.
-
-        Args:
-            kind: of the job.
-            title: for the person.
-            work: called in a thread.
-        """
+        """Run `work` in the background; refused while another job runs."""
         with self._lock:
             if self._status is not None:
                 raise EditRefused(_("{title} is still running; cancel it or wait").format(title=self._status.title))
@@ -127,8 +121,7 @@ class Jobs:
     def cancel(self, *, in_favour: bool = False) -> None:
         """Ask the running job to stop; it does at its next check.
 
-        Args:
-            in_favour: whether it stops for something else that the person does: then nothing is said of it.
+        Nothing is said where it stops in favour of something else that the person does.
         """
         self._in_favour = in_favour
         self._token.cancel()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from diorama_app.session.textures import Textures
+from diorama_app.session.shared_document import Textures
 from diorama_core.artefacts import FurtherPhoto, Inputs, Reason
 from diorama_core.errors import ProjectError
 from diorama_core.io.bounded import shorten

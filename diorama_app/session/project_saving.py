@@ -64,12 +64,7 @@ class ProjectSaving:
     """The folder of the open project follows its document."""
 
     def __init__(self, say: Callable[[str, NoticeKind], None], on_version: Callable[[], None]) -> None:
-        """Save nothing yet.
-
-        Args:
-            say: told from another thread what could not be saved, and when it has been.
-            on_version: told from another thread that a scene became an earlier version.
-        """
+        """Save nothing yet; both are told from another thread: what could not be saved or has been, and of versions."""
         self.autosave = Autosave(
             on_error=lambda line: say(line, "bad"), on_saved=lambda line: say(line, "good"), on_version=on_version
         )
@@ -94,13 +89,7 @@ class ProjectSaving:
         self._inputs = inputs
 
     def save_soon(self, project: Project, document: Document, library: ShapeLibrary) -> None:
-        """Write within a second what of a document differs from the folder.
-
-        Args:
-            project: the folder.
-            document: of that project.
-            library: where the shapes of its scene are.
-        """
+        """Write within a second what of a document differs from the folder; its shapes are in the library."""
         scene, inputs, further = document.scene, document.inputs, document.further_photos
         begun = bool(scene.objects or scene.architecture.planes) or project.has_scene
         _note_library(project, scene, library)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -10,6 +11,7 @@ from typing import Any
 
 from diorama_app.projects.dropped import Dropped, interpret
 from diorama_app.projects.uploads import Upload, decode
+from diorama_app.session.connected_client import ConnectedClient
 from diorama_core.errors import EditRefused, SphericalPhotoError
 from diorama_core.io.limited import LimitedProcess
 from diorama_core.perception.inputs import ReadInputs
@@ -18,23 +20,20 @@ from diorama_core.perception.inputs.depth.scale import AmbiguousDepthError
 MAX_WAITING = 2
 """Uploads of one person that are read or wait for it."""
 
-Post = Callable[[Callable[[], None]], None]
-
 
 class Reader:
-    """Reads uploads one after another. May be used from any thread."""
+    """Reads uploads one after another, each told to whoever uploaded. May be used from any thread."""
 
     def __init__(self) -> None:
         self._process = LimitedProcess()
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="reading")
         self._lock = threading.Lock()
-        self._waiting: dict[int, int] = {}
+        self._waiting = Counter[int]()
 
     def read(
         self,
         upload: Upload,
-        client_id: int,
-        post: Post,
+        client: ConnectedClient,
         then: Callable[[ReadInputs], None],
         ask: Callable[[AmbiguousDepthError | SphericalPhotoError], None] | None = None,
     ) -> None:
@@ -42,25 +41,32 @@ class Reader:
 
         Args:
             upload: what came.
-            client_id: whose it is.
-            post: runs a task where errors are told to that person.
-            then: given the checked inputs, there.
-            ask: given what a depth map may be, or that the photo shows all directions, there; None where that is an
-                error.
+            client: whose it is.
+            then: given the checked inputs.
+            ask: given what a depth map may be, or that the photo shows all directions; None where that is an error.
 
         Raises:
             EditRefused: two uploads of this person are being read already.
         """
-        self._begin(client_id)
-        self._pool.submit(self._read, upload, client_id, post, then, ask)
+
+        def work() -> None:
+            try:
+                read = decode(upload, self._process)
+            except (AmbiguousDepthError, SphericalPhotoError) as error:
+                if ask is None:
+                    raise
+                client.post(partial(ask, error))
+            else:
+                client.post(lambda: then(read))
+
+        self._submit(work, client)
 
     def recognise(
         self,
         content: bytes,
         name: str,
         photo_size: tuple[int, int] | None,
-        client_id: int,
-        post: Post,
+        client: ConnectedClient,
         then: Callable[[Dropped], None],
     ) -> None:
         """Say what a file, or a zip archive of several, may be, in the decoding process.
@@ -69,18 +75,15 @@ class Reader:
             content: of the file.
             name: of the file.
             photo_size: of the photo that is open.
-            client_id: whose it is.
-            post: as for `read`.
-            then: given what it may be, there.
+            client: whose it is.
+            then: given what it may be.
         """
-        self._begin(client_id)
-        self._pool.submit(self._recognise, (content, name, photo_size), client_id, post, then)
 
-    def _begin(self, client_id: int) -> None:
-        with self._lock:
-            if self._waiting.get(client_id, 0) >= MAX_WAITING:
-                raise EditRefused("your last files are still being read; wait a moment and try again")
-            self._waiting[client_id] = self._waiting.get(client_id, 0) + 1
+        def work() -> None:
+            readings = self._process.call(name, interpret, content, name, photo_size)
+            client.post(lambda: then(readings))
+
+        self._submit(work, client)
 
     def wait(self, timeout_s: float = 60.0) -> bool:
         """Block until what was asked for is read; False when that took too long."""
@@ -93,47 +96,27 @@ class Reader:
         self._pool.shutdown(wait=False, cancel_futures=True)
         self._process.stop()
 
-    def _read(
-        self,
-        upload: Upload,
-        client_id: int,
-        post: Post,
-        then: Callable[[ReadInputs], None],
-        ask: Callable[[AmbiguousDepthError | SphericalPhotoError], None] | None,
-    ) -> None:
-        try:
-            read = decode(upload, self._process)
-            post(lambda: then(read))
-        except (AmbiguousDepthError, SphericalPhotoError) as error:
-            post(_raising(error) if ask is None else partial(ask, error))
-        except Exception as error:  # raised again on the UI thread, for whoever uploaded
-            post(_raising(error))
-        finally:
-            self._end(client_id)
-
-    def _recognise(
-        self,
-        file: tuple[bytes, str, tuple[int, int] | None],
-        client_id: int,
-        post: Post,
-        then: Callable[[Dropped], None],
-    ) -> None:
-        try:
-            readings = self._process.call(file[1], interpret, *file)
-            post(lambda: then(readings))
-        except Exception as error:  # as above
-            post(_raising(error))
-        finally:
-            self._end(client_id)
-
-    def _end(self, client_id: int) -> None:
+    def _submit(self, work: Callable[[], None], client: ConnectedClient) -> None:
         with self._lock:
-            self._waiting[client_id] -= 1
-            if not self._waiting[client_id]:
-                del self._waiting[client_id]
+            if self._waiting[client.id] >= MAX_WAITING:
+                raise EditRefused("your last files are still being read; wait a moment and try again")
+            self._waiting[client.id] += 1
+
+        def run() -> None:
+            try:
+                work()
+            except Exception as error:  # raised again on the UI thread, for whoever uploaded
+                client.post(raising(error))
+            finally:
+                with self._lock:
+                    self._waiting[client.id] -= 1
+
+        self._pool.submit(run)
 
 
-def _raising(error: Exception) -> Callable[[], Any]:
+def raising(error: Exception) -> Callable[[], Any]:
+    """What raises an error where it is told to somebody."""
+
     def fail() -> None:
         raise error
 

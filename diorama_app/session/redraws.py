@@ -42,12 +42,7 @@ class Redraws:
         """What a redraw takes, a running mean."""
 
     def ask(self, clients: Iterable[ConnectedClient], first: ConnectedClient | None = None) -> None:
-        """Draw these browsers' panels soon.
-
-        Args:
-            clients: whose panels are out of date.
-            first: whoever caused it: drawn at once unless that was done just now.
-        """
+        """Draw these browsers' panels soon; those of whoever caused it at once unless that was done just now."""
         all_of_them = list(clients)
         known = {g.id for g in all_of_them}
         self._drawn_at = {i: t for i, t in self._drawn_at.items() if i in known}

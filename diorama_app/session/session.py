@@ -245,13 +245,7 @@ class EditorSession(SharedDocument):
         self.on_left()
 
     def notice(self, client_id: int | None, message: str, kind: NoticeKind = "info") -> None:
-        """Tell one person, or all when it is not known which.
-
-        Args:
-            client_id: of the browser; None for all.
-            message: for the person.
-            kind: how serious it is.
-        """
+        """Tell one person, or all when it is not known which."""
         client = self.clients.get(client_id) if client_id is not None else None
         for one in [client] if client is not None else list(self.clients.values()):
             one.notice(message, kind)
@@ -263,10 +257,7 @@ class EditorSession(SharedDocument):
     def post(self, client_id: int | None, task: Callable[[], object], *, key: str | None = None) -> None:
         """Do `task` on the UI thread for one browser, which is told when it fails. May be called from any thread.
 
-        Args:
-            client_id: of the browser.
-            task: what to do.
-            key: of tasks with the same key only the last one is done.
+        Only the last of several tasks with the same key is done.
         """
         self.ui_thread.post(
             task, key=key, client_id=client_id, on_error=lambda message: self.notice(client_id, message, "bad")

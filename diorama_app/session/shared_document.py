@@ -1,15 +1,19 @@
-"""The document as several people and programs change it: each step's author, and who may take it back."""
+"""The document as several people and programs change it: each step's author, who may take it back, and the pictures on
+the room's planes.
+"""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+
+import numpy as np
+from jaxtyping import UInt8
 
 from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.document import Document, IsMine
 from diorama_app.session.project_saving import ProjectSaving
-from diorama_app.session.textures import Textures, refit
 from diorama_app.strings import _
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.editing.hand_placed import mark_by_hand
@@ -185,3 +189,22 @@ class SharedDocument(ABC):
         for client in self.clients.values():
             client.to_say = (message, False)
         self.save_and_show(person)
+
+
+Textures = Mapping[str, UInt8[np.ndarray, "_ _ 3"]]
+"""Pictures by their file names."""
+
+
+def refit(before: Scene, after: Scene, textures: Textures) -> tuple[Scene, Textures]:
+    """The edited scene and its new pictures.
+
+    Those of resized planes are cut and continued, not stretched; those of finishes are made."""
+    if after.architecture is before.architecture:
+        return after, {}
+    # OpenCV; opening a project does without it
+    from diorama_core.appearance.surface_finish import with_finish_pictures
+    from diorama_core.architecture.texture.refit import refit_textures
+
+    after, made = refit_textures(before, after, textures)
+    after, finishes = with_finish_pictures(after, {**textures, **made})
+    return after, {**made, **finishes}

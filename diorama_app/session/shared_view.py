@@ -15,7 +15,7 @@ import viser
 from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.preparation import Preparer
 from diorama_app.session.redraws import Redraws
-from diorama_app.session.textures import Textures
+from diorama_app.session.shared_document import Textures
 from diorama_app.session.ui_thread import UiThread
 from diorama_app.strings import N_, _
 from diorama_app.viewport.camera import DEFAULT_FOV_RAD, room_view
@@ -62,13 +62,7 @@ class SharedView:
     """Draws a session's scene on its server, and has its clients' panels drawn."""
 
     def __init__(self, shown: Shown, shapes: ShapeBytes, preparer: Preparer) -> None:
-        """Draw nothing yet.
-
-        Args:
-            shown: the session.
-            shapes: what browsers draw of a shape.
-            preparer: readies the shapes of the scene for gestures.
-        """
+        """Draw nothing yet of the session that is shown."""
         self._shown = shown
         self._preparer = preparer
         self.viewport = Viewport(shown.server, shapes, pick=self._pick, drag=self._drag, later=self._replace_later)
@@ -81,8 +75,7 @@ class SharedView:
     def refresh(self, by: ConnectedClient | None = None) -> None:
         """Bring every browser in line with the document: the scene at once, panels as often as can be followed.
 
-        Args:
-            by: who caused it; sees the panels follow before the others do.
+        Who caused it sees the panels follow before the others do.
         """
         scene, clients = self._shown.scene, list(self._shown.clients.values())
         self._draw(N_("the view"), lambda: self.viewport.show(scene, self._shown.textures))

@@ -22,9 +22,7 @@ NOT_A_LENGTH = N_("“{words}” is not a length; write for example 1.2 m, 85 cm
 def parse_length(words: str, unit: Unit) -> float:
     """Metres of a length such as "1.2", "85 cm", "5' 3 1/2\\"" or "6ft 2in", or of a sum such as "0.5+25 cm".
 
-    Args:
-        words: as they were written.
-        unit: of bare numbers.
+    Bare numbers are in the unit.
 
     Raises:
         InputError: it is not a length.

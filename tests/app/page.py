@@ -5,11 +5,14 @@ from __future__ import annotations
 import asyncio
 import html
 import json
-from typing import Any
+from typing import Any, TypeVar
 
 import viser
 
 from diorama_app.session.client import Client
+from diorama_app.session.connected_client import Panel
+
+P = TypeVar("P", bound=Panel)
 
 
 class Page(viser.GuiApi):
@@ -37,6 +40,13 @@ class Page(viser.GuiApi):
             return handle
 
         return add
+
+    def put(self, kind: type[P], *more: Any) -> P:
+        """Make a panel on the page, the only one that follows what is done."""
+        made = kind(self, self.client, *more)
+        self.client.panels = [made]
+        made.refresh()
+        return made
 
     # -- reading ----------------------------------------------------------------------------------------------
 

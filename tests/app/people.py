@@ -56,6 +56,17 @@ class LocalClient(viser.ClientHandle):
         self.told.append(body)
 
 
+def settle(session: EditorSession, seconds: float = 60.0) -> None:
+    """Wait until the session's job is over and everything is shown."""
+    assert session.jobs.wait(seconds)
+    assert session.ui_thread.wait(60.0)
+
+
+def node(server: viser.ViserServer, name: str | None) -> Any:
+    """What a page draws under a name; None where there is nothing."""
+    return server.scene._handle_from_node_name.get(name)
+
+
 def join(session: EditorSession, client_id: int = 0) -> Client:
     """A browser connects to the session."""
     session.join(LocalClient(session.server, client_id))

@@ -5,14 +5,13 @@ import sys
 
 import pytest
 
-from diorama_app.cli import main
 from diorama_app.cli.api import add_api
+from tests.cli.running import refused
 
 
 def test_what_is_missing_is_named(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "fastapi", None)
-    assert main(["api"]) == 1
-    assert "pip install 'diorama[api]'" in capsys.readouterr().err
+    assert "pip install 'diorama[api]'" in refused(capsys, ["api"])
 
 
 def test_it_listens_on_this_machine_only_by_default() -> None:

@@ -57,7 +57,7 @@ def test_bad_words_are_refused_naming_them(read, text: str) -> None:
 
 def test_a_command_runs_its_function_and_shows_its_example(capsys: pytest.CaptureFixture[str]) -> None:
     parser = argparse.ArgumentParser()
-    made = command(parser.add_subparsers(), "go", lambda a: 7, "Goes.", "diorama go --far")
+    made = command(parser.add_subparsers(), "go", lambda a: 7, "diorama go --far", "Goes.")
     made.add_argument("--far", action="store_true")
     a = parser.parse_args(["go", "--far", "--verbose"])
     assert a.run(a) == 7

@@ -20,6 +20,7 @@ from diorama_core.pose.correspondence.solvers import CorrespondencePose
 from diorama_core.project.storage import Project
 from tests.app.small_room import furnished_scene
 from tests.cli.room_photo import write_room
+from tests.cli.running import refused, told
 from tests.few_shapes import stored_seats
 
 
@@ -50,8 +51,7 @@ def test_building_again_reads_finished_stages(project: Path, capsys: pytest.Capt
     photo, boxes = project.parent / "room.png", project.parent / "boxes.json"
     before = (project / "scene.json").read_text()
     command = ["build", str(photo), "--boxes", str(boxes), "--library", stored_seats(), "-o", str(project), "--json"]
-    assert main(command) == 0
-    report = json.loads(capsys.readouterr().out)
+    report = json.loads(told(capsys, command))
     assert all(s["cached"] for s in report["stages"] if s["stage"] not in ("layout", "refinement"))
     assert (project / "scene.json").read_text() == before
 
@@ -66,16 +66,14 @@ def test_a_photo_alone_gives_a_room_and_an_invitation(
     monkeypatch.setattr(assets, "FOLDER", without)
     photo, _ = write_room(tmp_path)
     Image.fromarray(np.asarray(Image.open(photo).convert("L")).astype(np.uint16) * 257).save(tmp_path / "deep.png")
-    assert main(["build", str(tmp_path / "deep.png"), "-o", str(tmp_path / "empty")]) == 0
-    assert "draw boxes" in capsys.readouterr().out
+    assert "draw boxes" in told(capsys, ["build", str(tmp_path / "deep.png"), "-o", str(tmp_path / "empty")])
     document = json.loads((tmp_path / "empty" / "scene.json").read_text())
     assert document["objects"] == []
     assert any(p["role"] == "wall" for p in document["architecture"]["planes"])
 
 
 def test_optimise_reports_its_costs(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["optimise", str(project), "--json"]) == 0
-    report = json.loads(capsys.readouterr().out)
+    report = json.loads(told(capsys, ["optimise", str(project), "--json"]))
     assert report["recipe"] == "feasible"
     assert set(report["before"]) == set(report["after"])
 
@@ -105,8 +103,7 @@ def test_arrangements_write_scenes_with_other_shapes(
     shutil.copytree(project, tmp_path / "room")  # its stages are finished
     arguments = ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "room"), "--arrangements", "3"]
     arguments += ["--library", stored_seats()]
-    assert main([*arguments, "--json"]) == 0
-    names = json.loads(capsys.readouterr().out)["scenes"]
+    names = json.loads(told(capsys, [*arguments, "--json"]))["scenes"]
     shapes = [
         tuple(o["shape"] for o in json.loads((tmp_path / "room" / name).read_text())["objects"]) for name in names
     ]
@@ -114,8 +111,7 @@ def test_arrangements_write_scenes_with_other_shapes(
 
 
 def test_doctor_finds_what_is_needed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["doctor", "--json"]) == 0
-    findings = {f["name"]: f for f in json.loads(capsys.readouterr().out)}
+    findings = {f["name"]: f for f in json.loads(told(capsys, ["doctor", "--json"]))}
     assert findings["torch"]["ok"]
     assert "shapes" in findings["shape library"]["detail"]
 
@@ -158,16 +154,6 @@ def test_every_command_has_help_with_an_example(command: str, capsys: pytest.Cap
     assert f"diorama {command}" in capsys.readouterr().out.split("example:")[1]
 
 
-def _one_line(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> str:
-    assert main(arguments) == 1
-    captured = capsys.readouterr()
-    lines = [x for x in captured.err.splitlines() if x.startswith("diorama:") and not x.startswith("diorama: note")]
-    assert len(lines) == 1
-    assert "Traceback" not in captured.err
-    assert captured.out == ""
-    return lines[0]
-
-
 def _bad_photos(folder: Path) -> dict[str, Path]:
     good, _ = write_room(folder)
     bad = {
@@ -192,7 +178,7 @@ def test_a_bad_photo_is_one_clear_line_and_loses_nothing(
 ) -> None:
     before = (project / "scene.json").read_bytes()
     photo = _bad_photos(tmp_path)[case]
-    assert photo.name in _one_line(capsys, ["build", str(photo), "-o", str(project)])
+    assert photo.name in refused(capsys, ["build", str(photo), "-o", str(project)])
     assert (project / "scene.json").read_bytes() == before
 
 
@@ -202,7 +188,7 @@ def test_boxes_outside_and_unknown_classes(tmp_path: Path, capsys: pytest.Captur
     photo = tmp_path / "room.tif"
     Image.open(given).convert("CMYK").save(photo)
     boxes.write_text(json.dumps([{"bbox": [900, 900, 950, 950], "class": "chair"}]))
-    assert "outside" in _one_line(capsys, ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "a")])
+    assert "outside" in refused(capsys, ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "a")])
     boxes.write_text(json.dumps([{"bbox": [120, 110, 180, 200], "class": "flurbistan"}]))
     command = ["build", str(photo), "--boxes", str(boxes), "--library", stored_seats(), "-o", str(tmp_path / "b")]
     assert main(command) == 0
@@ -214,7 +200,7 @@ def test_depth_of_another_size_is_one_clear_line(tmp_path: Path, capsys: pytest.
     photo, _ = write_room(tmp_path)
     np.save(tmp_path / "depth.npy", np.full((50, 300), 2.0, np.float32))
     arguments = ["build", str(photo), "--depth", str(tmp_path / "depth.npy"), "-o", str(tmp_path / "a")]
-    assert "depth.npy" in _one_line(capsys, arguments)
+    assert "depth.npy" in refused(capsys, arguments)
 
 
 def test_other_failures_are_one_clear_line(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -230,7 +216,7 @@ def test_other_failures_are_one_clear_line(project: Path, tmp_path: Path, capsys
         ["export", str(project), "--format", "glb", "-o", str(tmp_path / "file" / "room.glb")],
     ]
     for arguments in cases:
-        assert _one_line(capsys, arguments)
+        assert refused(capsys, arguments)
 
 
 def test_the_installed_command_runs() -> None:

@@ -16,6 +16,7 @@ from diorama_core.export.turntable import write_turntable
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Architecture, Pose, Scene, SceneObject, Support
+from tests.cli.running import refused, told
 from tests.primitives import box_room, eye_camera
 
 
@@ -33,22 +34,19 @@ def furnished() -> Scene:
 def test_an_exported_file_becomes_the_same_project(tmp_path, furnished: Scene, capsys) -> None:
     picture = np.full((64, 64, 3), 200, np.uint8)
     export_scene(furnished, built_in_library(), tmp_path / "room.glb", "glb", textures={"w": picture})
-    assert main(["import", str(tmp_path / "room.glb"), "-o", str(tmp_path / "back")]) == 0
-    assert "1 object, 6 planes" in capsys.readouterr().out
+    command = ["import", str(tmp_path / "room.glb"), "-o", str(tmp_path / "back")]
+    assert "1 object, 6 planes" in told(capsys, command)
     project = Project.open(tmp_path / "back")
     assert project.load_scene() == furnished
     texture = project.texture("w")
     assert texture is not None
     assert np.abs(texture.astype(int) - 200).max() <= 2
-    assert main(["import", str(tmp_path / "room.glb"), "-o", str(tmp_path / "back")]) == 1
-    assert "has a scene already" in capsys.readouterr().err
+    assert "has a scene already" in refused(capsys, command)
 
 
 def test_what_cannot_be_read_is_one_line_and_leaves_no_project(tmp_path, capsys) -> None:
     (tmp_path / "room.glb").write_bytes(b"nothing")
-    assert main(["import", str(tmp_path / "room.glb"), "-o", str(tmp_path / "p")]) == 1
-    err = capsys.readouterr().err.strip().splitlines()[-1]
-    assert err.startswith("diorama: ")
+    assert refused(capsys, ["import", str(tmp_path / "room.glb"), "-o", str(tmp_path / "p")])
     assert not (tmp_path / "p").exists()
 
 

@@ -13,6 +13,7 @@ from diorama_app.cli import main
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.render.views import StudioView, render_shape
 from tests.cli.room_photo import write_room
+from tests.cli.running import refused, told
 from tests.few_shapes import stored_seats
 
 
@@ -22,12 +23,13 @@ def mine() -> str:
 
 
 def test_listing_and_searching_a_stored_library(mine: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["library", "list", "--library", mine, "--json"]) == 0
-    ids = [row["id"] for row in json.loads(capsys.readouterr().out)]
-    assert len(ids) == 4
-    assert all(i.startswith("my-") for i in ids)
-    assert main(["library", "search", "couches", "--library", f"built-in+{mine}", "-k", "200", "--json"]) == 0
-    found = [row["id"] for row in json.loads(capsys.readouterr().out)]
+    def ids(*words: str) -> list[str]:
+        return [row["id"] for row in json.loads(told(capsys, ["library", *words, "--json"]))]
+
+    listed = ids("list", "--library", mine)
+    assert len(listed) == 4
+    assert all(i.startswith("my-") for i in listed)
+    found = ids("search", "couches", "--library", f"built-in+{mine}", "-k", "200")
     assert any(i.startswith("my-sofa") for i in found)
     assert any(not i.startswith("my-") for i in found)
 
@@ -37,8 +39,7 @@ def test_searching_by_a_picture(mine: str, tmp_path: Path, capsys: pytest.Captur
     sofa = built_in.in_category("sofa")[0]
     Image.fromarray(render_shape(built_in, sofa.id, (120, 120), StudioView(0.4, 0.25))).save(tmp_path / "sofa.png")
     command = ["library", "search", "--image", str(tmp_path / "sofa.png"), "--library", mine, "-k", "1", "--json"]
-    assert main(command) == 0
-    assert json.loads(capsys.readouterr().out)[0]["id"] == f"my-{sofa.id}"
+    assert json.loads(told(capsys, command))[0]["id"] == f"my-{sofa.id}"
 
 
 def test_unknown_nouns_are_told(capsys: pytest.CaptureFixture[str]) -> None:
@@ -57,10 +58,7 @@ def test_unknown_nouns_are_told(capsys: pytest.CaptureFixture[str]) -> None:
     ],
 )
 def test_mistakes_are_told_in_one_line(arguments: list[str], says: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["library", *arguments]) == 1
-    error = capsys.readouterr().err
-    assert says in error
-    assert "Traceback" not in error
+    assert says in refused(capsys, ["library", *arguments])
 
 
 def test_a_project_keeps_to_its_library(mine: str, tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from diorama_app.cli import main
 from diorama_app.cli.build import add_build
 from diorama_app.cli.many_photos import REPORT
 from tests.cli.room_photo import write_room
+from tests.cli.running import refused, told
 from tests.few_shapes import stored_seats
 from tests.processes import quick_workers
 
@@ -35,8 +36,7 @@ def test_a_folder_becomes_projects_and_a_report(tmp_path: Path, capsys: pytest.C
     assert "1 of 2 photos failed" in said.err
     assert "broken.jpg" in (output / REPORT).read_text()
     (photos / "broken.jpg").unlink()
-    assert main(command[:-1]) == 0
-    assert "1 of 1 photos became scenes (1 were finished before)" in capsys.readouterr().out
+    assert "1 of 1 photos became scenes (1 were finished before)" in told(capsys, command[:-1])
     assert main(["picture", str(output / "room"), "-o", str(tmp_path / "room.png"), "--size", "64x48"]) == 0
 
 
@@ -47,14 +47,16 @@ def test_options_of_one_photo_are_refused_for_a_folder(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], option: str, value: str
 ) -> None:
     write_room(tmp_path)
-    assert main(["build", str(tmp_path), "--out", str(tmp_path / "out"), option, value]) == 1
-    assert f"{option} is for one photo" in capsys.readouterr().err
+    assert f"{option} is for one photo" in refused(
+        capsys, ["build", str(tmp_path), "--out", str(tmp_path / "out"), option, value]
+    )
 
 
 def test_options_of_a_folder_are_refused_for_one_photo(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     photo, _ = write_room(tmp_path)
-    assert main(["build", str(photo), "-o", str(tmp_path / "out"), "--workers", "2"]) == 1
-    assert "for a folder of photos" in capsys.readouterr().err
+    assert "for a folder of photos" in refused(
+        capsys, ["build", str(photo), "-o", str(tmp_path / "out"), "--workers", "2"]
+    )
 
 
 @pytest.mark.parametrize("spelled", ["-o", "--output", "--out"])

@@ -12,6 +12,7 @@ from diorama_core.models.network import Network
 from diorama_core.models.store import ModelStore
 from diorama_core.project.storage import Project
 from tests.cli.room_photo import write_room
+from tests.cli.running import refused, told
 from tests.few_shapes import stored_seats
 
 
@@ -23,8 +24,7 @@ def _own_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_networks_are_listed_with_size_and_licence(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["models", "list", "--json"]) == 0
-    rows = {r["id"]: r for r in json.loads(capsys.readouterr().out)}
+    rows = {r["id"]: r for r in json.loads(told(capsys, ["models", "list", "--json"]))}
     assert rows["yolox-nano"]["licence"] == "Apache-2.0"
     assert rows["sam2.1-large"]["size_mb"] > 900
     assert not any(r["here"] for r in rows.values())
@@ -48,10 +48,8 @@ def test_a_set_is_pulled_in_half_precision_where_a_card_calculates_with_it(monke
 
 
 def test_path_and_verify_without_networks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["models", "path"]) == 0
-    assert capsys.readouterr().out.strip() == str(tmp_path / "models")
-    assert main(["models", "verify"]) == 0
-    assert "pull" in capsys.readouterr().out
+    assert told(capsys, ["models", "path"]).strip() == str(tmp_path / "models")
+    assert "pull" in told(capsys, ["models", "verify"])
 
 
 def test_files_fetched_elsewhere_and_damage_found(
@@ -79,9 +77,7 @@ def test_files_fetched_elsewhere_and_damage_found(
     ids=["unknown", "own copy", "licence not accepted", "no folder", "no text"],
 )
 def test_failures_are_one_clear_line(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(arguments) == 1
-    lines = [x for x in capsys.readouterr().err.splitlines() if x.startswith("diorama:")]
-    assert len(lines) == 1
+    assert refused(capsys, arguments)
 
 
 def test_failing_networks_and_language_models_leave_the_project_as_it_was(
@@ -89,12 +85,9 @@ def test_failing_networks_and_language_models_leave_the_project_as_it_was(
 ) -> None:
     def fails(*more: str) -> str:
         """The one line that is said; the scene is what it was."""
-        capsys.readouterr()
-        assert main([*arguments, *more]) == 1
-        lines = [x for x in capsys.readouterr().err.splitlines() if x.startswith("diorama:")]
-        assert len(lines) == 1, lines
+        said = refused(capsys, [*arguments, *more])
         assert (tmp_path / "room" / "scene.json").read_bytes() == before
-        return lines[0]
+        return said
 
     photo, boxes = write_room(tmp_path, marked=1)
     arguments = ["build", str(photo), "--boxes", str(boxes), "-o", str(tmp_path / "room"), "--library", stored_seats()]

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from diorama_app.cli import main
 from diorama_app.cli.project import add_project
 from diorama_core.project.storage import Project
 from tests.app.small_room import furnished_scene, make_project
+from tests.cli.running import refused, told
 from tests.editing.test_homes import with_door
 
 
@@ -19,8 +19,7 @@ def test_projects_are_listed_copied_packed_and_unpacked(tmp_path: Path, capsys: 
     where = ["--projects", str(home)]
 
     def said(*command: str) -> str:
-        assert main(["project", *command]) == 0
-        return capsys.readouterr().out
+        return told(capsys, ["project", *command])
 
     assert "room-2" in said("copy", "room", *where)
     listed = json.loads(said("list", *where, "--json"))
@@ -35,10 +34,7 @@ def test_projects_are_listed_copied_packed_and_unpacked(tmp_path: Path, capsys: 
 
 @pytest.mark.parametrize("command", [["copy", "nowhere"], ["zip", "nowhere"], ["unzip", "nowhere.diorama"]])
 def test_what_is_not_there_is_one_line(command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["project", *command, "--projects", str(tmp_path)]) == 1
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert "nowhere" in error
+    assert "nowhere" in refused(capsys, ["project", *command, "--projects", str(tmp_path)])
 
 
 def test_a_room_joins_a_home_at_their_door(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -46,22 +42,18 @@ def test_a_room_joins_a_home_at_their_door(tmp_path: Path, capsys: pytest.Captur
         project = make_project(tmp_path / name)
         project.save_scene(with_door(furnished_scene(), "door_9", wall, 0.2))
     join = ["project", "join", "hall", "study", "--projects", str(tmp_path)]
-    assert main([*join, "--door", "door_9", "--to", "door_9"]) == 0
-    assert "a home of 2 rooms" in capsys.readouterr().out
+    assert "a home of 2 rooms" in told(capsys, [*join, "--door", "door_9", "--to", "door_9"])
     made = Project.open(tmp_path / "hall").load_scene()
     assert len(made.rooms) == 2
     assert len(Project.open(tmp_path / "study").load_scene().rooms) == 0
-    assert main(["project", "rooms", "hall", "--projects", str(tmp_path)]) == 0
-    said = capsys.readouterr().out
+    rooms = ["project", "rooms", "hall", "--projects", str(tmp_path)]
+    said = told(capsys, rooms)
     assert "hall, storey 0: 17.6 m2, " in said
     assert "35.2 m2 in 2 rooms" in said
-    assert main(["project", "rooms", "hall", "--projects", str(tmp_path), "--json"]) == 0
-    assert [r["name"] for r in json.loads(capsys.readouterr().out)["rooms"]] == ["hall", "study"]
-    assert main([*join, "--door", "door_1", "--to", "door_9"]) == 1
-    assert "choose one of: door_9" in capsys.readouterr().err
+    assert [r["name"] for r in json.loads(told(capsys, [*rooms, "--json"]))["rooms"]] == ["hall", "study"]
+    assert "choose one of: door_9" in refused(capsys, [*join, "--door", "door_1", "--to", "door_9"])
     Project.open(tmp_path / "study").update_info(library="mine")
-    assert main([*join, "--door", "door_9", "--to", "door_9"]) == 1
-    assert "uses the library mine" in capsys.readouterr().err
+    assert "uses the library mine" in refused(capsys, [*join, "--door", "door_9", "--to", "door_9"])
 
 
 def test_an_action_is_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
@@ -77,7 +69,7 @@ def test_a_project_is_found_by_its_own_name_where_one_alone_has_it(
 ) -> None:
     for folder, name in (("a", "My room"), ("b", "Attic"), ("c", "Attic")):
         make_project(tmp_path / folder).update_info(name=name)
-    assert main(["project", "copy", "My room", "--projects", str(tmp_path)]) == 0
-    assert "a copy of a" in capsys.readouterr().out
-    assert main(["project", "copy", "Attic", "--projects", str(tmp_path)]) == 1
-    assert "2 projects are called Attic; give a folder:" in capsys.readouterr().err
+    assert "a copy of a" in told(capsys, ["project", "copy", "My room", "--projects", str(tmp_path)])
+    assert "2 projects are called Attic; give a folder:" in refused(
+        capsys, ["project", "copy", "Attic", "--projects", str(tmp_path)]
+    )

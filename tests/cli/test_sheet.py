@@ -9,12 +9,14 @@ from PIL import Image
 
 from diorama_app.cli import main
 from diorama_app.cli.library import changes
+from tests.cli.running import told
 
 
 def test_one_category_on_a_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "plates.png"
-    assert main(["library", "sheet", "--category", "dinner plates", "-o", str(out), "--size", "32"]) == 0
-    assert "shapes on" in capsys.readouterr().out
+    assert "shapes on" in told(
+        capsys, ["library", "sheet", "--category", "dinner plates", "-o", str(out), "--size", "32"]
+    )
     assert Image.open(out).width == 6 * 32
 
 
@@ -39,8 +41,7 @@ def test_one_shape_from_four_sides(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert main(["library", "show", "night-stand-cane"]) == 0
-    assert "night-stand-cane (" in capsys.readouterr().out
+    assert "night-stand-cane (" in told(capsys, ["library", "show", "night-stand-cane"])
     page = np.asarray(Image.open("night-stand-cane.png"))
     side = len(page) // 2
     views = [page[:side, :side], page[:side, side:], page[side:, :side], page[side:, side:]]

@@ -11,6 +11,7 @@ from PIL import Image
 from diorama_app.cli import main
 from diorama_app.cli.variants import PICTURE_PX
 from diorama_core.project.storage import Project
+from tests.cli.running import told
 from tests.export.scenes import scene_of
 
 pytest.importorskip("mujoco", reason="MuJoCo is not installed (optional extra 'sim')")
@@ -27,8 +28,7 @@ def test_variants_come_with_a_manifest_and_a_contact_sheet(
 ) -> None:
     folder = tmp_path / "cousins"
     command = ["export", str(project), "--format", "mjcf", "--variants", "2", "--vary", "light", "--seed", "7"]
-    assert main([*command, "-o", str(folder)]) == 0
-    assert "2 variants" in capsys.readouterr().out
+    assert "2 variants" in told(capsys, [*command, "-o", str(folder)])
     manifest = json.loads((folder / "variants.json").read_text())
     assert [v["seed"] for v in manifest["variants"]] == [7, 8]
     assert all(set(v["changes"]) == {"light"} and v["max_moved_m"] < 0.01 for v in manifest["variants"])
@@ -46,5 +46,4 @@ def test_what_cannot_vary_is_one_line(project: Path, tmp_path: Path, capsys: pyt
 
 def test_a_shaken_floor_is_reported(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     command = ["export", str(project), "--format", "mjcf", "-o", str(tmp_path / "room.xml"), "--shake"]
-    assert main(command) == 0
-    assert "floor shaken by 0.3 g at 2 Hz for 3 s: 0 of 8 objects fall" in capsys.readouterr().out
+    assert "floor shaken by 0.3 g at 2 Hz for 3 s: 0 of 8 objects fall" in told(capsys, command)

@@ -9,6 +9,7 @@ from diorama_app.cli import main, words
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.project.storage import Project
 from diorama_core.synthesis.grammar import furnish_room
+from tests.cli.running import refused, told
 from tests.perception.language.stub_lmm import StubLmm, answering
 
 
@@ -25,8 +26,7 @@ def room(tmp_path: Path) -> Path:
 
 
 def test_edits_are_listed_made_and_saved(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["edit", str(room), "make all chairs wooden and paint the walls light blue", "--yes"]) == 0
-    said = capsys.readouterr().out
+    said = told(capsys, ["edit", str(room), "make all chairs wooden and paint the walls light blue", "--yes"])
     assert "make the walls light blue" in said
     assert "swap for" in said
     scene = Project.open(room).load_scene()
@@ -52,12 +52,10 @@ def test_a_person_is_asked(room: Path, monkeypatch: pytest.MonkeyPatch, answer: 
 
 def test_json_is_one_document_and_makes_the_edits_only_with_yes(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = (room / "scene.json").read_bytes()
-    assert main(["edit", str(room), "a rug under the table", "--json"]) == 0
-    report = json.loads(capsys.readouterr().out)
+    report = json.loads(told(capsys, ["edit", str(room), "a rug under the table", "--json"]))
     assert (report["done"], report["translator"], report["edits"][0]["do"]) == (False, "grammar", "insert")
     assert (room / "scene.json").read_bytes() == before
-    assert main(["edit", str(room), "a rug under the table", "--json", "--yes"]) == 0
-    assert json.loads(capsys.readouterr().out)["done"]
+    assert json.loads(told(capsys, ["edit", str(room), "a rug under the table", "--json", "--yes"]))["done"]
     assert (room / "scene.json").read_bytes() != before
 
 
@@ -66,9 +64,7 @@ def test_failures_are_one_clear_line_and_change_nothing(
     room: Path, words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = (room / "scene.json").read_bytes()
-    assert main(["edit", str(room), words, "--yes"]) == 1
-    lines = [x for x in capsys.readouterr().err.splitlines() if x.startswith("diorama:")]
-    assert len(lines) == 1
+    assert refused(capsys, ["edit", str(room), words, "--yes"])
     assert (room / "scene.json").read_bytes() == before
 
 
@@ -80,8 +76,7 @@ def test_a_language_model_translates_where_there_is_one(
     with answering(StubLmm([json.dumps(plan)])) as stub:
         monkeypatch.setenv("DIORAMA_LMM_BASE_URL", stub.address)
         monkeypatch.setenv("DIORAMA_LMM_MODEL", "stub")
-        assert main(["edit", str(room), "one seat too many, I think", "--json", "--yes"]) == 0
-    report = json.loads(capsys.readouterr().out)
+        report = json.loads(told(capsys, ["edit", str(room), "one seat too many, I think", "--json", "--yes"]))
     assert report["translator"] == "stub"
     assert report["lines"] == ["remove chair 1"]
     assert not Project.open(room).load_scene().has_object("chair_1")

@@ -19,9 +19,9 @@ pytest.importorskip("fastapi", reason="needs FastAPI (pip install 'diorama[agent
 from mcp import Client  # after the check for its library
 from mcp.client.stdio import StdioServerParameters
 
-from diorama_app.cli import main
 from diorama_app.projects.example import example_project
 from tests.cli.room_photo import write_room
+from tests.cli.running import refused
 from tests.waiting import until
 
 pytestmark = pytest.mark.posix
@@ -87,10 +87,8 @@ def test_a_taken_port_and_a_missing_project_are_one_line(
     over_http: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     port = over_http.split(":")[2].split("/")[0]
-    assert main(["mcp", "--http", port]) == 1
-    assert f"port {port}" in capsys.readouterr().err
-    assert main(["mcp", str(tmp_path)]) == 1
-    assert "is not a project" in capsys.readouterr().err
+    assert f"port {port}" in refused(capsys, ["mcp", "--http", port])
+    assert "is not a project" in refused(capsys, ["mcp", str(tmp_path)])
 
 
 @pytest.mark.slow

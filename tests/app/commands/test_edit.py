@@ -22,7 +22,6 @@ from diorama_app.panels.supports import supporters
 from diorama_app.session.client import Client
 from diorama_app.session.jobs import AT_ONCE, Jobs, JobStatus, Outcome
 from diorama_app.session.session import EditorSession
-from diorama_app.session.ui_thread import UiThread
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
@@ -194,28 +193,6 @@ def test_an_optimiser_result_leaves_what_was_edited_meanwhile_and_what_is_locked
     final = edits.place(start, raised)
     current = edits.set_locked(edits.rename(start, "chair_1", "mine"), "lamp_1", True)
     assert set(final_poses(current, start, final)) == {"table_1", "chair_2", "picture_1"}
-
-
-def test_the_desk_works_in_order_and_keeps_only_the_newest_of_a_key() -> None:
-    errors: list[str] = []
-    ui_thread = UiThread(errors.append)
-    gate, done = threading.Event(), []
-    ui_thread.post(gate.wait)
-    for i in range(50):
-        ui_thread.post(lambda i=i: done.append(i), key="drag")
-    ui_thread.post(lambda: done.append("end"))
-
-    def refuse() -> None:
-        raise EditRefused("no")
-
-    ui_thread.post(refuse)
-    ui_thread.post(lambda: 1 / 0)
-    gate.set()
-    assert ui_thread.wait()
-    assert done == [49, "end"]
-    assert errors[0] == "no"
-    assert "log" in errors[1]
-    ui_thread.stop()
 
 
 def test_a_job_that_ends_while_it_is_cancelled_has_ended(monkeypatch: pytest.MonkeyPatch) -> None:

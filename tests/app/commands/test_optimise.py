@@ -13,6 +13,7 @@ from diorama_app.session.layout_run import LayoutRun
 from diorama_core.artefacts import LayoutReport
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
+from tests.app.people import settle
 
 
 class Curves:
@@ -45,9 +46,8 @@ def test_curves_are_drawn_less_often_than_the_objects(session, client, monkeypat
 
 
 def _run(session, *given, **more) -> LayoutRun:
-    run = optimise.optimise(*given, **more)
-    assert session.jobs.wait(60.0)
-    assert session.ui_thread.wait()
+    run = optimise.optimise(session, *given, **more)
+    settle(session)
     return run
 
 
@@ -55,7 +55,7 @@ def test_tidying_up_leaves_what_a_person_placed(session, client) -> None:
     edit.set_base_position(client, "chair_1", np.array([0.1, 2.2, 0.5]))  # in the air, in the middle of the table
     chair, other = session.scene.object("chair_1"), session.scene.object("chair_2")
     session.edit("lift", lambda s: edits.move(s, "chair_2", other.pose.move((0.0, 0.0, 0.4))), by=client)
-    run = _run(session, session, "feasible")
+    run = _run(session, "feasible")
     assert session.scene.object("chair_1") == chair
     assert session.scene.object("chair_2").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-3)
     assert run.left == 1
@@ -63,13 +63,13 @@ def test_tidying_up_leaves_what_a_person_placed(session, client) -> None:
 
 def test_asked_for_everything_it_moves_that_too(session, client) -> None:
     edit.set_base_position(client, "chair_1", np.array([-0.9, 1.5, 0.5]))
-    _run(session, session, "feasible", by_hand_too=True)
+    _run(session, "feasible", by_hand_too=True)
     assert session.scene.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-3)
 
 
 def test_a_selection_is_asked_for_whoever_placed_it(session, client) -> None:
     edit.set_base_position(client, "chair_1", np.array([-0.9, 1.5, 0.5]))
-    _run(session, session, "feasible", ("chair_1",))
+    _run(session, "feasible", ("chair_1",))
     assert session.scene.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-3)
 
 

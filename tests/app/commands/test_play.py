@@ -11,6 +11,7 @@ from diorama_app.commands.play import play
 from diorama_app.session.client import Playing
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
+from tests.app.people import settle
 
 pytest.importorskip("mujoco", reason="playing needs MuJoCo (extra 'sim')")
 
@@ -39,8 +40,7 @@ def test_what_falls_and_is_pushed_is_one_undo_step(session, client, monkeypatch)
     _until(lambda: shown[-1]["chair_2"].position[1] < was - 0.05)
     assert session.scene is before, "the document waits"
     play(client)
-    assert session.jobs.wait(30.0)
-    assert session.ui_thread.wait()
+    settle(session)
     assert client.doing is None
     assert session.scene.object("chair_1").corners_world[:, 2].min() == pytest.approx(0.0, abs=0.02)
     session.undo(client)
@@ -52,8 +52,7 @@ def test_a_cancelled_game_changes_nothing(session, client) -> None:
     before = session.scene
     play(client)
     session.jobs.cancel()
-    assert session.jobs.wait(30.0)
-    assert session.ui_thread.wait()
+    settle(session)
     assert session.scene is before
     assert client.doing is None
 
@@ -70,6 +69,5 @@ def test_where_nothing_moves_there_is_no_step(session, client) -> None:
     _until(lambda: session.jobs.status is not None and "push" in session.jobs.status.message)
     before = session.scene
     play(client)
-    assert session.jobs.wait(30.0)
-    assert session.ui_thread.wait()
+    settle(session)
     assert session.scene is before

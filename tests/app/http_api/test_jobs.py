@@ -5,6 +5,7 @@ import json
 import shutil
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,6 +21,7 @@ from diorama_core.errors import ProjectError
 from diorama_core.perception.inputs import read_inputs
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
+from tests.app.http_api.asgi import messages
 from tests.app.small_room import PlainLibrary, furnished_scene, make_project
 from tests.cli.room_photo import write_room
 from tests.waiting import until
@@ -80,26 +82,7 @@ def test_a_build_that_ends_its_server_is_not_begun_for_ever(tmp_path: Path) -> N
 
 async def _asked(app: FastAPI, method: str, path: str) -> tuple[int, dict]:
     """What an application answers, without a server."""
-    sent: list[dict] = []
-    way, _, query = path.partition("?")
-    scope = {
-        "type": "http",
-        "method": method,
-        "path": way,
-        "raw_path": way.encode(),
-        "query_string": query.encode(),
-        "headers": [(b"host", b"127.0.0.1:8090")],
-        "http_version": "1.1",
-        "scheme": "http",
-    }
-
-    async def receive() -> dict:
-        return {"type": "http.request", "body": b"", "more_body": False}
-
-    async def send(message: dict) -> None:
-        sent.append(message)
-
-    await app(scope, receive, send)
+    sent = await messages(app, method=method, path=path)
     body = b"".join(m.get("body", b"") for m in sent[1:])
     headers = dict(sent[0]["headers"])
     if headers.get(b"content-type") == b"application/json":
@@ -118,41 +101,20 @@ def _done(projects: Path, name: str) -> Path:
     return project.folder
 
 
-def _damage(folder: Path, kind: str) -> None:
-    """What may happen to a job's project while the server runs."""
-    match kind:
-        case "gone":
-            shutil.rmtree(folder)
-        case "moved":
-            folder.rename(folder.with_name("elsewhere"))
-        case "info cut":
-            (folder / "project.json").write_text("{")
-        case "info of others":
-            (folder / "project.json").write_text("[]")
-        case "scene gone":
-            (folder / "scene.json").unlink()
-        case "scene cut":
-            (folder / "scene.json").write_text("{")
-        case "scene a folder":
-            (folder / "scene.json").unlink()
-            (folder / "scene.json").mkdir()
-        case "notes are no list":
-            Project(folder).update_info(notes=7)
-        case "notes of anything":
-            Project(folder).update_info(notes=[{"a": 1}, None, "x" * 10_000, "half \ud800"])
-
-
-DAMAGES = (
-    "gone",
-    "moved",
-    "info cut",
-    "info of others",
-    "scene gone",
-    "scene cut",
-    "scene a folder",
-    "notes are no list",
-    "notes of anything",
-)
+DAMAGES: dict[str, Callable[[Path], object]] = {
+    "gone": shutil.rmtree,
+    "moved": lambda folder: folder.rename(folder.with_name("elsewhere")),
+    "info cut": lambda folder: (folder / "project.json").write_text("{"),
+    "info of others": lambda folder: (folder / "project.json").write_text("[]"),
+    "scene gone": lambda folder: (folder / "scene.json").unlink(),
+    "scene cut": lambda folder: (folder / "scene.json").write_text("{"),
+    "scene a folder": lambda folder: ((folder / "scene.json").unlink(), (folder / "scene.json").mkdir()),
+    "notes are no list": lambda folder: Project(folder).update_info(notes=7),
+    "notes of anything": lambda folder: Project(folder).update_info(
+        notes=[{"a": 1}, None, "x" * 10_000, "half \ud800"]
+    ),
+}
+"""What may happen to a job's project while the server runs."""
 
 
 @pytest.mark.parametrize("kind", DAMAGES)
@@ -161,7 +123,7 @@ def test_one_damaged_job_does_not_hide_the_others(tmp_path: Path, kind: str) -> 
     _done(tmp_path, "good")
     bad = _done(tmp_path, "bad")
     queue = _queue(tmp_path)
-    _damage(bad, kind)
+    DAMAGES[kind](bad)
     status, told = _ask(queue, "GET", "/v1/jobs")
     assert status == 200
     jobs = {job["id"]: job for job in told["jobs"]}

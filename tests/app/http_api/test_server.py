@@ -25,6 +25,7 @@ from diorama_app.http_api.access import MAX_BODY_BYTES
 from diorama_app.projects.formats import EXPORT_FORMATS
 from tests.app.http_api.openapi_client import Client, send
 from tests.cli.room_photo import write_room
+from tests.cli.running import refused
 from tests.few_shapes import stored_seats
 from tests.io.test_bombs import png
 from tests.waiting import until
@@ -275,8 +276,7 @@ def test_a_running_job_can_be_cancelled(client: Client, photo: dict) -> None:
 def test_a_taken_port_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        assert main(["api", "--port", str(port), "--projects", str(tmp_path)]) == 1
-    assert f"port {port}" in capsys.readouterr().err
+        assert f"port {port}" in refused(capsys, ["api", "--port", str(port), "--projects", str(tmp_path)])
 
 
 def test_the_document_says_what_the_api_is(client: Client) -> None:

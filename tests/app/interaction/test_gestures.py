@@ -19,6 +19,7 @@ from diorama_core.editing.collisions import Collisions
 from diorama_core.geometry.rotations import quaternion_wxyz
 from diorama_core.scene.types import Pose, Scene, yaw_rotation
 from tests.app import pointer
+from tests.app.people import node, settle
 from tests.app.small_room import furnished_scene
 
 SCENE = furnished_scene()
@@ -36,10 +37,6 @@ def gestures(session: EditorSession, client: Client) -> Gestures:
     return made
 
 
-def settle(session: EditorSession) -> None:
-    assert session.ui_thread.wait(60.0)
-
-
 def pick(gestures: Gestures, object_id: str, modifier: pointer.Modifier | None = None, at=pointer.MIDDLE) -> None:
     visitor = gestures._client.viser_client
     gestures.pick(object_id, pointer.clicked(visitor, object_id, at=at, modifier=modifier))
@@ -55,7 +52,7 @@ def drag(session: EditorSession, gestures: Gestures, object_id: str, by: tuple, 
 
 def send(session: EditorSession, gestures: Gestures, object_id: str, phase, grabbed, hand, modifier=None) -> None:
     """One event of a drag."""
-    target = node(session, session.viewport.node_name(object_id))
+    target = node(session.server, session.viewport.node_name(object_id))
     event = pointer.dragged(gestures._client.viser_client, target, phase, grabbed, hand, modifier=modifier)
     gestures.drag(object_id, event)
     settle(session)
@@ -63,15 +60,11 @@ def send(session: EditorSession, gestures: Gestures, object_id: str, phase, grab
 
 def shown_at(session: EditorSession, object_id: str) -> np.ndarray:
     """Where the page draws an object."""
-    return np.array(node(session, session.viewport.node_name(object_id)).position)
-
-
-def node(session: EditorSession, name: str | None):
-    return session.server.scene._handle_from_node_name.get(name)
+    return np.array(node(session.server, session.viewport.node_name(object_id)).position)
 
 
 def gizmo(session: EditorSession):
-    return node(session, NODE)
+    return node(session.server, NODE)
 
 
 def turn(session: EditorSession, gestures: Gestures, phase: str, pose: Pose) -> None:
@@ -277,10 +270,10 @@ def test_the_gizmo_is_where_the_selected_object_is_if_it_can_be_moved(session, c
     client.select(["chair_2"])
     client.change_preferences(gizmo="size")
     assert gizmo(session) is None
-    assert node(session, "/size/front") is not None
+    assert node(session.server, "/size/front") is not None
     client.change_preferences(gizmo="free")
     assert gizmo(session) is not None
-    assert node(session, "/size/front") is None
+    assert node(session.server, "/size/front") is None
 
 
 def test_the_gizmo_moves_and_turns_in_one_step(session, client, gestures) -> None:

@@ -16,8 +16,7 @@ def panel(session, page: Page, client) -> AllProjects:
         folder = make_project(session.projects_dir / f"room-{k:02}").folder
         for written in (folder / "scene.json", folder / "stages" / "inputs.zip"):
             os.utime(written, (1e9 + k, 1e9 + k))
-    made = AllProjects(page, client)
-    client.panels = [made]
+    made = page.put(AllProjects)
     client.open_projects()
     return made
 

@@ -11,10 +11,7 @@ from tests.app.page import Page
 
 @pytest.fixture
 def panel(page: Page, client) -> Alternatives:
-    made = Alternatives(page, client)
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(Alternatives)
 
 
 def test_nothing_is_offered_for_nothing(page, panel) -> None:

@@ -19,8 +19,7 @@ from tests.perception.inputs.depth.rooms import HEIGHT, WIDTH
 
 @pytest.fixture
 def dropped(page: Page, client, commands) -> DroppedFiles:
-    panel = PhotoPanel(page, client, commands)
-    client.panels = [panel]
+    panel = page.put(PhotoPanel, commands)
     made = DroppedFiles(client, panel)
     listen_for_drops(page, client, made.take)
     return made

@@ -9,10 +9,7 @@ from tests.waiting import until
 
 @pytest.fixture
 def panel(page: Page, client) -> EditByWords:
-    made = EditByWords(page, client)
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(EditByWords)
 
 
 def test_a_command_shows_its_edits_and_applies_them(session, page, panel) -> None:

@@ -27,9 +27,7 @@ def test_the_page_is_told_every_surface_and_how_the_thing_stands() -> None:
 
 
 def test_it_comes_with_placing_and_goes_with_escape(session, client, page) -> None:
-    ghost = PlacingGhost(page, client)
-    client.panels = [ghost]
-    ghost.refresh()
+    ghost = page.put(PlacingGhost)
     assert ghost._node is None
     start_placing(client, "chair_a")
     assert ghost._node is not None

@@ -11,10 +11,7 @@ from tests.waiting import until
 
 @pytest.fixture
 def panel(page: Page, client) -> LibraryPanel:
-    made = LibraryPanel(page, client)
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(LibraryPanel)
 
 
 def test_without_words_one_of_every_kind_is_shown(page, panel) -> None:

@@ -13,10 +13,7 @@ from tests.geometry.test_sun import room
 
 @pytest.fixture
 def panel(page: Page, client) -> LightPanel:
-    made = LightPanel(page, client)
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(LightPanel)
 
 
 def light(session) -> LightSettings:

@@ -1,10 +1,14 @@
+"""Messages, dialogs and questions over the page."""
+
 from __future__ import annotations
 
 import pytest
 
 from diorama_app.commands import edit as editing
-from diorama_app.panels.messages import Toasts, dialog
+from diorama_app.panels.messages import Toasts, ask_depth, ask_which, dialog
+from diorama_app.projects.dropped import Dropped, Reading
 from diorama_app.session.client import Client, Measuring, Placing
+from diorama_core.perception.inputs.depth.scale import AmbiguousDepthError, DepthAnswer
 from tests.app.page import Page
 from tests.waiting import until
 
@@ -70,3 +74,25 @@ def test_one_dialog_at_a_time(client: Client, page: Page) -> None:
     client.dialog()
     assert client.dialog is None
     assert second._uuid not in modals
+
+
+def test_what_a_file_is(client: Client, page: Page) -> None:
+    client.viser_client.gui = page
+    found, taken = (Reading("photo", "a photo"), Reading("inputs", "a depth map")), []
+    ask_which(client, "a.zip", Dropped(found, ("notes.txt",)), taken.append)
+    assert "<p>Left out: notes.txt.</p>" in page.html
+    assert ("modal", "What is a.zip?") in {made[:2] for made in page.made}
+    page.press("A depth map")
+    assert taken == [found[1]]
+    assert client.dialog is None
+
+
+def test_which_unit(client: Client, page: Page) -> None:
+    client.viser_client.gui = page
+    choices, taken = (DepthAnswer("1/5000 m", 5000.0), DepthAnswer("1/4000 m", 4000.0)), []
+    ask_depth(client, AmbiguousDepthError("d.png: things have 4.5 times their size; give", choices), taken.append)
+    assert "4.5 times" in page.html
+    page.press("1/4000 m")
+    assert taken == [choices[1]]
+    with pytest.raises(AmbiguousDepthError):
+        ask_depth(client, AmbiguousDepthError("x"), taken.append)

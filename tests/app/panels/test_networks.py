@@ -21,10 +21,7 @@ def asked(monkeypatch: pytest.MonkeyPatch, tmp_path) -> list:
 
 @pytest.fixture
 def panel(page: Page, client, asked) -> Networks:
-    made = Networks(page, client)
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(Networks)
 
 
 def test_licences_are_accepted_before_anything_is_fetched(page, panel, asked) -> None:

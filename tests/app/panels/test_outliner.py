@@ -7,8 +7,7 @@ from tests.app.page import Page
 
 
 def test_the_list_counts_objects_and_selects_those_to_check(session, client, page: Page) -> None:
-    outliner = Outliner(page, client)
-    client.panels = [outliner]
+    page.put(Outliner)
     sure = tuple(replace(o, confidence=1.0) for o in session.scene.objects)
     session.document.open(replace(session.scene, objects=sure))
     client.refresh()

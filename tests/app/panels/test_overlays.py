@@ -55,10 +55,7 @@ def test_a_camera_being_tried_is_a_grid_on_the_floor(session, client, views, dra
 
 @pytest.fixture
 def panel(client, page: Page, views) -> Compare:
-    made = Compare(page, client, views)
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(Compare, views)
 
 
 def test_the_slider_lays_the_photo_over_the_model(client, page: Page, views, panel: Compare) -> None:
@@ -95,8 +92,7 @@ def test_on_the_drawing_board_it_is_not_in_the_way(client, page: Page, panel: Co
 
 
 def test_the_page_is_told_outlines_and_names(session, client, page: Page) -> None:
-    panel = Silhouettes(page, client)
-    client.panels = [panel]
+    panel = page.put(Silhouettes)
     client.select(("lamp_1",))
     session.ui_thread.wait()
     node = session.viewport.node_name("lamp_1")

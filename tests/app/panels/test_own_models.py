@@ -28,9 +28,7 @@ def library(session, client, page: Page, tmp_path: Path, monkeypatch: pytest.Mon
         shape = Shape(f"my-{name}", "box", name, (1.0, 1.0, 1.0))
         made.own().add(pack_shape(shape, [trimesh.creation.box((0.3, 0.6, 0.3))], None, name, ()))
     session.library = session.shapes._library = made
-    panel = LibraryPanel(page, client)
-    client.panels = [panel]
-    panel.refresh()
+    page.put(LibraryPanel)
     page.act("shelf", "own")
     return made
 

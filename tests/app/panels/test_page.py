@@ -40,9 +40,7 @@ def test_asking_for_the_same_tab_again_runs_again(page: Page) -> None:
 def test_the_page_asks_once(client, page) -> None:
     asked: list[int] = []
     widened: list[int] = []
-    panel = PanelLayout(page, client, lambda: asked.append(1), lambda: widened.append(1))
-    client.panels = [panel]
-    panel.refresh()
+    panel = page.put(PanelLayout, lambda: asked.append(1), lambda: widened.append(1))
     page.act("two panels")
     assert not page.shows("two panels")
     page.act("one panel")

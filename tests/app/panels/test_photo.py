@@ -37,10 +37,7 @@ def panel(session, page: Page, client, commands, monkeypatch) -> PhotoPanel:
     monkeypatch.setattr(photo_panel, "can_find_furniture", lambda: False)
     monkeypatch.setattr("diorama_app.panels.photo_boxes.Suggestions", Known)
     client.preferences = replace(client.preferences, build_at_once=False)
-    made = PhotoPanel(page, client, commands)
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(PhotoPanel, commands)
 
 
 def test_a_360_degree_photo_is_marked_first_or_built_at_once(session, page: Page, panel: PhotoPanel, client) -> None:

@@ -12,10 +12,7 @@ from tests.app.small_room import photo_camera as camera_of_the_photo
 
 @pytest.fixture
 def panel(page: Page, client, views) -> PhotoCameraPanel:
-    made = PhotoCameraPanel(page, client, views)
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(PhotoCameraPanel, views)
 
 
 def test_figures_are_those_of_the_camera() -> None:

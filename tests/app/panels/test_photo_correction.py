@@ -26,8 +26,7 @@ def panel(session, page: Page, client, asked) -> PhotoCorrection:
     table = replace(session.scene.object("table_1"), box_px=BOX)
     scene = replace(session.scene, objects=tuple(table if o.id == "table_1" else o for o in session.scene.objects))
     session.document.open(scene, session.document.inputs)
-    made = PhotoCorrection(page, client)
-    client.panels = [made]
+    made = page.put(PhotoCorrection)
     client.select(["table_1"])
     return made
 

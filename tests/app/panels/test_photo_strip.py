@@ -11,8 +11,7 @@ from tests.app.small_room import photo_camera, plain_photo
 
 
 def test_photos_are_chosen_looked_through_and_taken_out(client: Client, page: Page, views: Views) -> None:
-    strip = PhotoStrip(page, client, views)
-    client.panels = [strip]
+    strip = page.put(PhotoStrip, views)
     opened: list[bool] = []
     client.open_board = lambda: opened.append(True)
     strip.refresh()

@@ -6,17 +6,16 @@ import pytest
 from diorama_app.commands import edit as editing
 from diorama_app.panels.physics import Physics
 from tests.app.page import Page
+from tests.app.people import node
 
 
 @pytest.fixture
 def panel(page: Page, client) -> Physics:
-    made = Physics(page, client)
-    client.panels = [made]
-    return made
+    return page.put(Physics)
 
 
 def colliders(client):
-    return client.viser_client.scene._handle_from_node_name.get("/colliders")
+    return node(client.session.server, "/colliders")
 
 
 def test_physics_are_folded_until_somebody_wants_them(session, client, page, panel) -> None:

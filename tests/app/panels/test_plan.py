@@ -17,9 +17,7 @@ from tests.waiting import until
 
 @pytest.fixture
 def plan(client, page: Page) -> Plan:
-    made = Plan(page, client)
-    client.panels = [made]
-    return made
+    return page.put(Plan)
 
 
 def refresh(client: Client, plan: Plan, page: Page) -> None:

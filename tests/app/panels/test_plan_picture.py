@@ -15,8 +15,7 @@ from tests.waiting import until
 
 
 def test_a_picture_is_kept_moved_and_removed(session: EditorSession, client: Client, page: Page) -> None:
-    below = PicturesBelow(page, client, lambda: [[-2.0, -1.0], [2.0, 1.0]])
-    client.panels = [below]
+    below = page.put(PicturesBelow, lambda: [[-2.0, -1.0], [2.0, 1.0]])
     buffer = io.BytesIO()
     Image.new("RGB", (400, 200)).save(buffer, "PNG")
     below._receive("plan.png", buffer.getvalue())

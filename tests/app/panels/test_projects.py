@@ -15,10 +15,7 @@ def taken() -> list:
 @pytest.fixture
 def panel(session, page: Page, client, commands, taken) -> Projects:
     make_project(session.projects_dir / "other")
-    made = Projects(page, client, commands, lambda name, content: taken.append((name, content)))
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(Projects, commands, lambda name, content: taken.append((name, content)))
 
 
 def test_projects_are_listed_and_opened(session, page, panel) -> None:

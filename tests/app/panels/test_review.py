@@ -13,8 +13,7 @@ from tests.review.doubtful_room import doubtful_scene
 
 @pytest.fixture
 def panel(session, page, client) -> Review:
-    made = Review(page, client)
-    client.panels = [made]
+    made = page.put(Review)
     session.commit("doubt", doubtful_scene())
     session.ui_thread.wait()
     return made

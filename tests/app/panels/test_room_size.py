@@ -11,8 +11,7 @@ from tests.app.page import Page
 
 @pytest.fixture
 def tape(page: Page, client) -> Tape:
-    made = Tape(page, client)
-    client.panels = [made]
+    made = page.put(Tape)
     client.doing = Measuring(((0.0, 0.0, 0.0), (1.0, 0.0, 0.0)))
     made.refresh()
     return made

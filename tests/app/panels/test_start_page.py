@@ -17,10 +17,7 @@ def taken() -> list[tuple[str, bytes]]:
 
 @pytest.fixture
 def panel(page: Page, client, taken) -> StartPage:
-    made = StartPage(page, client, lambda name, content: taken.append((name, content)))
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(StartPage, lambda name, content: taken.append((name, content)))
 
 
 def test_it_opens_by_itself_only_where_the_program_was_started_without_a_project(session, page, panel) -> None:

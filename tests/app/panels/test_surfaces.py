@@ -12,10 +12,7 @@ from tests.app.page import Page
 
 @pytest.fixture
 def panel(page: Page, client) -> Surfaces:
-    made = Surfaces(page, client)
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(Surfaces)
 
 
 def test_nothing_is_shown_until_a_surface_is_chosen(session, client, page, panel) -> None:

@@ -12,10 +12,7 @@ from tests.app.people import join
 
 @pytest.fixture
 def toolbar(page: Page, client, commands) -> Toolbar:
-    made = Toolbar(page, client, commands)
-    client.panels = [made]
-    made.refresh()
-    return made
+    return page.put(Toolbar, commands)
 
 
 def test_undo_and_redo_can_be_pressed_when_there_is_something(session, client, page, toolbar) -> None:

@@ -38,9 +38,7 @@ def session(_own_cache, session):
 
 def test_unsaved_changes_are_offered_and_restored_as_one_step(session, client, page: Page) -> None:
     lost = left_behind(session)
-    panel = UnsavedChanges(page, client)
-    client.panels = [panel]
-    panel.refresh()
+    page.put(UnsavedChanges)
     assert "were not saved when Diorama ended" in page.html
     page.act("restore")
     assert session.scene == lost
@@ -50,9 +48,7 @@ def test_unsaved_changes_are_offered_and_restored_as_one_step(session, client, p
 
 def test_they_can_be_forgotten(session, client, page: Page) -> None:
     left_behind(session)
-    panel = UnsavedChanges(page, client)
-    client.panels = [panel]
-    panel.refresh()
+    page.put(UnsavedChanges)
     before = session.scene
     page.act("discard")
     assert session.scene is before

@@ -11,8 +11,7 @@ import pytest
 import trimesh
 from PIL import Image
 
-from diorama_app.projects.dropped import Dropped, interpret
-from diorama_app.projects.dropped_files import files_of, upload_of
+from diorama_app.projects.dropped import Dropped, files_of, interpret, upload_of
 from diorama_core.errors import InputError
 from diorama_core.importing.point_cloud import MIN_POINTS
 from diorama_core.perception.inputs.boxes.reading import read_boxes

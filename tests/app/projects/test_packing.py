@@ -14,6 +14,7 @@ from diorama_app.projects.packing import is_packed, pack_project, unpack_project
 from diorama_app.reconstruction.opening_job import open_packed
 from diorama_core.errors import InputError, ProjectError, SceneError
 from diorama_core.project.storage import Project
+from tests.app.people import settle
 from tests.app.small_room import furnished_scene, make_project
 
 
@@ -82,8 +83,7 @@ def test_one_that_is_dropped_on_the_page_opens(packed: Path, client, session) ->
     (reading,) = interpret(content, "sent.zip", None).readings
     assert reading.action == "project"
     open_packed(client, "sent.zip", content)
-    assert session.jobs.wait(30.0)
-    assert session.ui_thread.wait()
+    settle(session)
     assert session.project.folder.name == "sent"
     assert session.scene == furnished_scene()
 

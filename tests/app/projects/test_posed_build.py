@@ -23,6 +23,7 @@ from diorama_core.progress import Progress
 from diorama_core.project.further_photos import load_photos
 from diorama_core.project.storage import Project
 from tests.cli.room_photo import room_picture
+from tests.cli.running import refused, told
 from tests.few_shapes import stored_seats
 from tests.multiview.colmap_files import write_colmap
 from tests.multiview.rooms import CAMERAS, THINGS, photo
@@ -53,8 +54,7 @@ def folder(tmp_path: Path) -> Path:
 @pytest.mark.slow
 def test_photos_with_cameras_become_one_project(folder: Path, tmp_path: Path, capsys) -> None:
     command = ["build", str(folder), "--poses", str(tmp_path / "model"), "-o", str(tmp_path / "room")]
-    assert main([*command, "--profile", "embedded", "--library", stored_seats(), "--json"]) == 0
-    said = json.loads(capsys.readouterr().out)
+    said = json.loads(told(capsys, [*command, "--profile", "embedded", "--library", stored_seats(), "--json"]))
     assert len(said["objects"]) == len(SHOWN)
     assert said["in_several"] == len(SHOWN)
     assert any("other.png" in note for note in said["notes"])
@@ -80,8 +80,9 @@ def test_photos_with_nothing_in_common_are_one_line(tmp_path: Path, capsys) -> N
     pytest.importorskip("pycolmap", reason="needs pycolmap (pip install 'diorama[photos]')")
     for number in range(2):
         Image.new("RGB", (160, 120), (90 + number, 90, 90)).save(tmp_path / f"{number}.png")
-    assert main(["build", str(tmp_path), "--poses", "find", "-o", str(tmp_path / "room")]) == 1
-    assert "too little in common" in capsys.readouterr().err
+    assert "too little in common" in refused(
+        capsys, ["build", str(tmp_path), "--poses", "find", "-o", str(tmp_path / "room")]
+    )
     assert not (tmp_path / "room").exists()
 
 
@@ -89,8 +90,7 @@ def test_poses_need_a_folder(tmp_path: Path, capsys) -> None:
     (tmp_path / "a.png").write_text("")
     assert build_posed.__doc__
     command = ["build", str(tmp_path / "a.png"), "--poses", str(tmp_path), "-o", str(tmp_path / "room")]
-    assert main(command) == 1
-    assert "--poses is for a folder" in capsys.readouterr().err
+    assert "--poses is for a folder" in refused(capsys, command)
 
 
 def test_no_photo_is_one_line() -> None:
@@ -123,8 +123,7 @@ def test_a_360_degree_photo_becomes_one_closed_room(tmp_path: Path, capsys) -> N
         "-o",
         str(tmp_path / "room"),
     ]
-    assert main([*command, "--profile", "embedded", "--json"]) == 0
-    said = json.loads(capsys.readouterr().out)
+    said = json.loads(told(capsys, [*command, "--profile", "embedded", "--json"]))
     assert any("360 degree photo" in note for note in said["notes"])
     assert len(said["photos"]) == 8
     scene = Project.open(tmp_path / "room").load_scene()

@@ -20,7 +20,7 @@ from diorama_core.io import assets
 from diorama_core.models.network import ModelFile, Network
 from diorama_core.models.store import ModelStore
 from diorama_core.project.storage import Project
-from tests.app.people import LocalClient
+from tests.app.people import LocalClient, settle
 from tests.app.small_room import plain_photo
 from tests.models import tiny_networks
 from tests.models.stub_hub import SHA, Hub, serving, try_again_at_once
@@ -56,8 +56,7 @@ def hub(monkeypatch: pytest.MonkeyPatch) -> Iterator[Hub]:
 
 def _told(client: Client) -> list[str]:
     """What was shown as an error, once the job and the desk are done."""
-    assert client.session.jobs.wait(60.0)
-    assert client.session.ui_thread.wait()
+    settle(client.session)
     viser_client = client.viser_client
     assert isinstance(viser_client, LocalClient)
     return viser_client.told

@@ -17,6 +17,7 @@ from diorama_core.errors import EditRefused
 from diorama_core.pipeline import reconstruct_object as pipeline
 from diorama_core.pipeline.reconstruct_object import Found
 from diorama_core.scene.types import Candidate, Pose, SceneObject, Support
+from tests.app.people import settle
 from tests.app.small_room import PlainLibrary
 
 BOX = (240.0, 200.0, 440.0, 420.0)
@@ -59,15 +60,10 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[dict]:
     return calls
 
 
-def finish(session) -> None:
-    assert session.jobs.wait(60.0)
-    assert session.ui_thread.wait(60.0)
-
-
 def test_what_was_missed_is_added_and_selected(session, client, asked) -> None:
     count = len(session.scene.objects)
     add_from_photo(client, (10.0, 300.0, 80.0, 400.0), "armchair")
-    finish(session)
+    settle(session)
     assert len(session.scene.objects) == count + 1
     new = session.scene.object(client.selection[0])
     assert (new.label, new.category, new.shape_id) == ("armchair", "armchair", "chair_c")
@@ -82,7 +78,7 @@ def test_what_was_missed_is_added_and_selected(session, client, asked) -> None:
 def test_another_class_stands_where_the_object_stood(session, client, asked) -> None:
     before = session.scene.object("table_1")
     rename_class(client, "table_1", " chair ")
-    finish(session)
+    settle(session)
     after = session.scene.object("table_1")
     assert (after.label, after.category, after.shape_id) == ("chair", "chair", "chair_c")
     np.testing.assert_allclose(after.pose.position[:2], before.pose.position[:2], atol=1e-6)
@@ -94,7 +90,7 @@ def test_another_class_stands_where_the_object_stood(session, client, asked) -> 
 def test_a_new_box_poses_it_again(session, client, asked) -> None:
     box = (100.0, 150.0, 300.0, 400.0)
     redraw_box(client, "table_1", box)
-    finish(session)
+    settle(session)
     assert asked[0]["box"].box == box
     assert session.scene.object("table_1").box_px == box
     np.testing.assert_allclose(session.scene.object("table_1").pose.position[:2], [0.5, 1.0], atol=1e-6)
@@ -105,7 +101,7 @@ def test_a_drawn_outline_is_what_is_looked_at(session, client, asked) -> None:
     assert outline.box == BOX
     assert outline.mask.any()
     use_outline(client, "table_1", outline)
-    finish(session)
+    settle(session)
     np.testing.assert_array_equal(asked[0]["mask"], outline.mask)
     assert start_outline(client, "table_1").mask.sum() == outline.mask.sum(), "it is remembered"
     with pytest.raises(EditRefused, match="outline is empty"):

@@ -17,6 +17,7 @@ from diorama_core.importing.scene_import import import_scene
 from diorama_core.project.further_photos import load_photos
 from diorama_core.scene.types import Scene
 from diorama_core.synthesis.artefacts import photo_only
+from tests.app.people import settle
 from tests.app.small_room import plain_photo
 from tests.few_shapes import few_shapes
 from tests.importing.roomplan_files import write_scan_of
@@ -87,8 +88,7 @@ def test_a_photo_that_does_not_join_is_one_line_and_nothing_is_lost(session: Edi
     said: list[str] = []
     client.view.notice = lambda message, kind: said.append(message)
     join_photo(client)
-    assert session.jobs.wait(60.0)
-    assert session.ui_thread.wait(60.0)
+    settle(session)
     assert any(line.startswith("grey does not join") for line in said), said
     assert session.scene is scene
     assert session.further_photos == photos
@@ -115,8 +115,7 @@ def test_the_first_photo_of_a_scan_is_marked_and_one_of_elsewhere_changes_nothin
     said: list[str] = []
     client.view.notice = lambda message, kind: said.append(message)
     join_photo(client)
-    assert session.jobs.wait(60.0)
-    assert session.ui_thread.wait(60.0)
+    settle(session)
     assert any(line.startswith("grey.png does not join the scan") for line in said), said
     assert session.scene is scene
     session.undo(client)
@@ -135,8 +134,7 @@ def test_the_first_photo_of_a_scan_brings_looks_and_new_things(
     marked = tuple(b for b in whole.boxes if b.category in SCANNED or b.category in ("door", "window", "plant"))
     take_photo(client, "room.jpg", replace(whole, boxes=marked))
     join_photo(client)
-    assert session.jobs.wait(400.0)
-    assert session.ui_thread.wait(60.0)
+    settle(session, 400.0)
     scene = session.scene
     assert scene.camera is not None
     assert {o.id for o in before.objects} < {o.id for o in scene.objects}

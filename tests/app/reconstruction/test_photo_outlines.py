@@ -6,18 +6,14 @@ import pytest
 
 from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_core.errors import EditRefused
-
-
-def finish(session) -> None:
-    assert session.jobs.wait(60.0)
-    assert session.ui_thread.wait(60.0)
+from tests.app.people import settle
 
 
 def test_what_was_found_in_the_photo_is_outlined_once(session, client, monkeypatch) -> None:
     outlines = PhotoOutlines(session)
     assert outlines.objects is None
     outlines.find(client)
-    finish(session)
+    settle(session)
     (table,) = outlines.objects
     assert table.category == "table"
     assert table.mask[320, 340]
@@ -29,7 +25,7 @@ def test_what_was_found_in_the_photo_is_outlined_once(session, client, monkeypat
 def test_another_photo_is_not_shown_with_the_old_outlines(session, client) -> None:
     outlines = PhotoOutlines(session)
     outlines.find(client)
-    finish(session)
+    settle(session)
     session.photo = replace(session.photo, name="another")
     assert outlines.objects is None
 

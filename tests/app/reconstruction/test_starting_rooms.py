@@ -5,6 +5,7 @@ import pytest
 from diorama_app.reconstruction.starting_rooms import open_example, start_empty_room
 from diorama_core.errors import EditRefused, InputError
 from diorama_core.library.catalogue import built_in_library
+from tests.app.people import settle
 
 
 def test_an_empty_room_is_a_project_of_its_own_and_a_bad_one_is_none(session, client) -> None:
@@ -23,7 +24,6 @@ def test_an_example_is_furnished_in_the_background(session, client) -> None:
         open_example(client, "castle")
     session.library = built_in_library()
     open_example(client, "study")
-    assert session.jobs.wait(60.0)
-    assert session.ui_thread.wait()
+    settle(session)
     assert session.project.name == "Study"
     assert len(session.scene.objects) > 5

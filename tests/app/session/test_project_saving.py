@@ -16,55 +16,50 @@ from tests.app.small_room import PlainLibrary, make_project
 
 
 @pytest.fixture
-def demo(tmp_path):
+def project(tmp_path: Path) -> Project:
     return make_project(tmp_path / "demo")
 
 
-def test_the_first_to_come_may_change_the_project_and_the_second_reads_why_not(demo) -> None:
+def test_the_first_to_come_may_change_the_project_and_the_second_reads_why_not(project) -> None:
     first, second = ProjectAccess(), ProjectAccess()
-    assert first.take(demo)
+    assert first.take(project)
     first.need_writable()
-    assert not second.take(demo)
+    assert not second.take(project)
     with pytest.raises(EditRefused, match="open in the editor of"):
         second.need_writable()
     first.release()
-    assert second.take(demo)
+    assert second.take(project)
     assert second.read_only == ""
     second.release()
 
 
-def test_opening_the_same_project_again_keeps_the_lock(demo) -> None:
+def test_opening_the_same_project_again_keeps_the_lock(project) -> None:
     access = ProjectAccess()
-    assert access.take(demo)
-    assert not access.take(demo)
-    assert not ProjectAccess().take(demo)
+    assert access.take(project)
+    assert not access.take(project)
+    assert not ProjectAccess().take(project)
     access.release()
 
 
-def test_another_project_gives_the_first_one_free(demo, tmp_path) -> None:
+def test_another_project_gives_the_first_one_free(project, tmp_path) -> None:
     access, other = ProjectAccess(), ProjectAccess()
-    access.take(demo)
+    access.take(project)
     assert access.take(make_project(tmp_path / "second"))
-    assert other.take(demo)
+    assert other.take(project)
     access.release()
     other.release()
 
 
-def test_a_folder_that_cannot_be_locked_is_opened_all_the_same(demo, monkeypatch) -> None:
+def test_a_folder_that_cannot_be_locked_is_opened_all_the_same(project, monkeypatch) -> None:
     def full(*given) -> None:
         raise ProjectError("the disk is full")
 
     monkeypatch.setattr("diorama_app.session.project_saving.ProjectLock", full)
     access = ProjectAccess()
-    assert not access.take(demo)
+    assert not access.take(project)
     access.need_writable()
     assert access.unwritable == "changes will not be saved: the disk is full"
-    assert lock.LOCK not in {p.name for p in demo.folder.iterdir()}
-
-
-@pytest.fixture
-def project(tmp_path: Path) -> Project:
-    return make_project(tmp_path / "demo")
+    assert lock.LOCK not in {p.name for p in project.folder.iterdir()}
 
 
 def test_what_differs_is_written_and_the_folder_let_go(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ import pytest
 from diorama_app.session import autosave as autosave_module
 from diorama_app.session import recovery
 from diorama_app.session.autosave import Autosave
-from diorama_app.session.recovery import Recovery
+from diorama_app.session.recovery import Recovery, Unsaved
 from diorama_core.artefacts import FurtherPhoto, Inputs
 from diorama_core.errors import ProjectError, SceneError
 from diorama_core.project.further_photos import load_photos
@@ -25,13 +25,59 @@ from tests.waiting import until
 @pytest.fixture
 def project(tmp_path: Path) -> Project:
     made = make_project(tmp_path / "demo")
-    long_ago = time.time() - 60.0
-    os.utime(made.scene_path, (long_ago, long_ago))
+    age(made.scene_path, 60.0)
     return made
 
 
 def renamed() -> Scene:
     return edits.rename(furnished_scene(), "chair_1", "throne")
+
+
+class Saves:
+    """The scenes that a project is asked to save, and what happens then."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *failures: Exception) -> None:
+        self.scenes: list[Scene] = []
+        self.meanwhile: Callable[[], None] = lambda: None
+        self.failures, really_save = list(failures), Project.save_scene
+
+        def save(project: Project, scene: Scene) -> bool:
+            self.scenes.append(scene)
+            self.meanwhile()
+            if self.failures:
+                raise self.failures.pop(0)
+            return really_save(project, scene)
+
+        monkeypatch.setattr(Project, "save_scene", save)
+
+
+FULL = (ProjectError("the disk is full"),) * 1000
+
+
+@pytest.fixture
+def autosave(tmp_path: Path) -> Autosave:
+    """One of which only the test writes anything."""
+    made = Autosave(lambda line: None, Recovery(tmp_path / "unsaved"), retry_s=600.0)
+    made.stop()
+    return made
+
+
+def note_of(folder: Path, aged_s: float = 0.0) -> Path:
+    """The only note of what is unsaved, made older."""
+    (note,) = (folder / "unsaved").glob("*.json")
+    age(note, aged_s)
+    return note
+
+
+def age(path: Path, by_s: float) -> None:
+    os.utime(path, (time.time() - by_s,) * 2)
+
+
+def check_offered(recovery: Recovery, project: Project) -> Unsaved:
+    found = recovery.find_unsaved(project)
+    assert found is not None
+    assert found.scene() == renamed()
+    return found
 
 
 def test_what_a_crash_left_is_offered_to_the_next_session_only(
@@ -41,9 +87,7 @@ def test_what_a_crash_left_is_offered_to_the_next_session_only(
     crashed, later = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
     crashed.note(project, renamed())
     assert crashed.find_unsaved(project) is None
-    found = later.find_unsaved(project)
-    assert found is not None
-    assert found.scene() == renamed()
+    found = check_offered(later, project)
     assert time.strptime(found.when, "%d %b %H:%M").tm_mon == time.localtime(found.at).tm_mon
     for _ in range(2):  # another page may have been quicker
         found.discard()
@@ -99,39 +143,27 @@ def test_what_is_saved_is_written_once(project: Project, tmp_path: Path) -> None
 
 
 def test_what_cannot_be_saved_is_retained(project: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(self: Project, scene: Scene) -> None:
-        raise ProjectError("the disk is full")
-
     monkeypatch.setattr(recovery, "SETTLED_S", -1.0)
-    monkeypatch.setattr(Project, "save_scene", full)
+    Saves(monkeypatch, *FULL)
     told: list[str] = []
     autosave = Autosave(told.append, Recovery(tmp_path / "unsaved"))
     autosave.save_soon(project, renamed())
     autosave.stop()
     assert "the disk is full" in told[0]
     assert "stored beside the project" in told[0]
-    found = Recovery(tmp_path / "unsaved").find_unsaved(project)
-    assert found is not None
-    assert found.scene() == renamed()
+    check_offered(Recovery(tmp_path / "unsaved"), project)
 
 
 def test_what_could_not_be_saved_is_saved_as_soon_as_there_is_space(
     project: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    full, really_save = [True], Project.save_scene
-
-    def save(self: Project, scene: Scene) -> bool:
-        if full[0]:
-            raise ProjectError("the disk is full")
-        return really_save(self, scene)
-
-    monkeypatch.setattr(Project, "save_scene", save)
+    saves = Saves(monkeypatch, *FULL)
     told: list[str] = []
     autosave = Autosave(told.append, Recovery(tmp_path / "unsaved"), on_saved=told.append, retry_s=0.1)
     autosave.save_soon(project, renamed())
     until(lambda: autosave.trouble)
     assert "the disk is full" in autosave.trouble
-    full[0] = False
+    saves.failures.clear()
     until(lambda: not autosave.trouble)
     assert project.load_scene() == renamed()
     assert [line.partition(":")[0] for line in told] == ["Not saved", "All changes are saved now."], "once each"
@@ -154,11 +186,8 @@ def test_the_page_is_told_when_there_is_an_earlier_version(project: Project, tmp
 def test_nothing_is_promised_when_nothing_can_be_retained(
     project: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def full(self: Project, scene: Scene) -> None:
-        raise ProjectError("the disk is full")
-
     (tmp_path / "unsaved").write_text("a file where the folder would be")
-    monkeypatch.setattr(Project, "save_scene", full)
+    Saves(monkeypatch, *FULL)
     told: list[str] = []
     autosave = Autosave(told.append, Recovery(tmp_path / "unsaved"))
     autosave.save_soon(project, renamed())
@@ -208,15 +237,13 @@ def test_a_note_that_cannot_be_made_does_not_end_the_thread(
 def test_leftovers_are_removed_when_their_time_is_over(project: Project, tmp_path: Path) -> None:
     old, here = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
     old.note(project, renamed())
-    superseded = next((tmp_path / "unsaved").glob("*.json"))
-    day_ago = time.time() - 86400.0
-    os.utime(superseded, (day_ago, day_ago))
+    superseded = note_of(tmp_path, 86400.0)
     project.save_scene(edits.rename(furnished_scene(), "chair_1", "stool"))
     names = ("demo/.scene.json.abc.part", "demo/stages/.x.zip.abc.part", "unsaved/.abc.part")
     parts = [tmp_path / name for name in names]
     for part in parts:
         part.write_bytes(b"half")
-        os.utime(part, (day_ago, day_ago))
+        age(part, 86400.0)
     fresh = project.folder / ".scene.json.now.part"
     fresh.write_bytes(b"being written")
     here.clean_up(project)
@@ -228,10 +255,9 @@ def test_leftovers_are_removed_when_their_time_is_over(project: Project, tmp_pat
 def test_a_damaged_unsaved_copy_is_not_in_the_way(project: Project, tmp_path: Path) -> None:
     old, here = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
     old.note(project, renamed())
-    damaged = next((tmp_path / "unsaved").glob("*.json"))
+    damaged = note_of(tmp_path)
     damaged.write_bytes(b"\xff\xfe[[[")
-    minute_ago = time.time() - 30.0
-    os.utime(damaged, (minute_ago, minute_ago))
+    age(damaged, 30.0)
     found = here.find_unsaved(project)
     assert found is not None
     with pytest.raises(SceneError):
@@ -243,16 +269,12 @@ def test_no_clock_decides_what_is_newer(project: Project, tmp_path: Path, ahead_
     """After a flight west the scene's time lay ahead, and the copy of what was not saved was deleted."""
     crashed, later = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
     crashed.note(project, renamed())
-    (noted,) = (tmp_path / "unsaved").glob("*.json")
-    minute_ago, then = time.time() - 60.0, time.time() + ahead_s
-    os.utime(noted, (minute_ago, minute_ago))
-    os.utime(project.scene_path, (then, then))
+    noted = note_of(tmp_path, 60.0)
+    age(project.scene_path, -ahead_s)
     later.clean_up(project)
-    found = later.find_unsaved(project)
-    assert found is not None
-    assert found.scene() == renamed()
+    check_offered(later, project)
     project.save_scene(edits.rename(furnished_scene(), "chair_1", "stool"))
-    os.utime(project.scene_path, (then, then))
+    age(project.scene_path, -ahead_s)
     assert later.find_unsaved(project) is None, "something newer is saved"
     later.clean_up(project)
     assert not noted.exists()
@@ -263,7 +285,7 @@ def test_a_session_keeps_one_note_of_a_project(project: Project, tmp_path: Path)
     for number in range(3):
         project.save_scene(edits.rename(furnished_scene(), "chair_1", f"stool {number}"))
         here.note(project, renamed())
-    assert len(list((tmp_path / "unsaved").glob("*.json"))) == 1
+    assert note_of(tmp_path)
     here.forget(project)
     assert not list((tmp_path / "unsaved").glob("*.json"))
 
@@ -271,51 +293,21 @@ def test_a_session_keeps_one_note_of_a_project(project: Project, tmp_path: Path)
 def test_notes_of_earlier_programs_are_found(project: Project, tmp_path: Path) -> None:
     old, here = Recovery(tmp_path / "unsaved"), Recovery(tmp_path / "unsaved")
     old.note(project, renamed())
-    (noted,) = (tmp_path / "unsaved").glob("*.json")
-    former = noted.rename(noted.with_name("-".join(noted.stem.split("-")[:2]) + ".json"))
-    minute_ago = time.time() - 30.0
-    os.utime(former, (minute_ago, minute_ago))
-    found = here.find_unsaved(project)
-    assert found is not None
-    assert found.scene() == renamed()
+    noted = note_of(tmp_path, 30.0)
+    noted.rename(noted.with_name("-".join(noted.stem.split("-")[:2]) + ".json"))
+    check_offered(here, project)
 
 
 def test_notes_of_other_projects_go_after_a_month(project: Project, tmp_path: Path) -> None:
     here = Recovery(tmp_path / "unsaved")
     other = make_project(tmp_path / "other")
     Recovery(tmp_path / "unsaved").note(other, renamed())
-    (note,) = (tmp_path / "unsaved").glob("*.json")
+    note = note_of(tmp_path)
     here.clean_up(project)
     assert note.exists()
-    os.utime(note, (0.0, time.time() - recovery.FORGOTTEN_S - 60.0))
+    age(note, recovery.FORGOTTEN_S + 60.0)
     here.clean_up(project)
     assert not note.exists()
-
-
-class Saves:
-    """The scenes that a project is asked to save, and what happens then."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, *failures: Exception) -> None:
-        self.scenes: list[Scene] = []
-        self.meanwhile: Callable[[], None] = lambda: None
-        really_save, failing = Project.save_scene, list(failures)
-
-        def save(project: Project, scene: Scene) -> bool:
-            self.scenes.append(scene)
-            self.meanwhile()
-            if failing:
-                raise failing.pop(0)
-            return really_save(project, scene)
-
-        monkeypatch.setattr(Project, "save_scene", save)
-
-
-@pytest.fixture
-def autosave(tmp_path: Path) -> Autosave:
-    """One of which only the test writes anything."""
-    made = Autosave(lambda line: None, Recovery(tmp_path / "unsaved"), retry_s=600.0)
-    made.stop()
-    return made
 
 
 def test_a_scene_that_is_saved_is_written_again_only_where_it_is_gone(
@@ -393,7 +385,7 @@ def test_what_cannot_be_saved_is_tried_again_at_its_time_and_the_thread_ends(
     project: Project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(autosave_module, "SETTLE_S", 0.001)
-    saves = Saves(monkeypatch, *[ProjectError("the disk is full")] * 50)
+    saves = Saves(monkeypatch, *FULL)
     made = Autosave(lambda line: None, Recovery(tmp_path / "unsaved"), retry_s=600.0)
     made.save_soon(project, renamed())
     until(lambda: made.trouble)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diorama_app.viewport.client_view import PLANE_LIFT_M, ClientView
-from tests.app.people import LocalClient
+from tests.app.people import LocalClient, node
 from tests.app.small_room import furnished_scene
 
 SCENE = furnished_scene()
@@ -16,10 +16,6 @@ def view(server):
     yield made
     made.canvas.close()
     server.scene.reset()
-
-
-def node(server, name: str):
-    return server.scene._handle_from_node_name.get(name)
 
 
 def test_edges_of_planes_run_around_them_just_off_their_surface(server, view) -> None:

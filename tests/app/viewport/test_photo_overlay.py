@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diorama_app.viewport.photo_overlay import LAYER_DEPTH_M, OVERLAY_DEPTH_M, PhotoCamera, PhotoOverlay
-from tests.app.people import LocalClient
+from tests.app.people import LocalClient, node
 from tests.app.small_room import photo_camera, plain_photo
 
 CAMERA = photo_camera()
@@ -15,10 +15,6 @@ RGB = plain_photo().rgb
 def overlay(server):
     yield PhotoOverlay(LocalClient(server, 0))
     server.scene.reset()
-
-
-def node(server, name: str):
-    return server.scene._handle_from_node_name.get(name)
 
 
 def test_the_photo_over_the_model_covers_exactly_what_its_camera_saw(server, overlay) -> None:

@@ -9,6 +9,7 @@ from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.room_light import MAX_LAMPS_LIGHT, RoomLightView
 from diorama_core.scene.light_settings import LightSettings
 from diorama_core.scene.types import RoomLight, Scene
+from tests.app.people import node
 from tests.app.small_room import PlainLibrary, furnished_scene
 from tests.geometry.test_sun import room
 
@@ -27,10 +28,6 @@ def lights(server, request):
 
 def lit(scene: Scene, settings: LightSettings) -> Scene:
     return replace(scene, light_settings=settings)
-
-
-def node(server, name: str):
-    return server.scene._handle_from_node_name.get(name)
 
 
 def names(server, stem: str) -> list[str]:

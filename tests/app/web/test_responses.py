@@ -6,7 +6,15 @@ import http
 from websockets.datastructures import Headers
 from websockets.http11 import Response
 
-from diorama_app.web.responses import SCRIPTS, SECURITY_HEADERS, TOKEN_COOKIE, add_headers, prepend_scripts
+from diorama_app.web.responses import (
+    SCRIPTS,
+    SECURITY_HEADERS,
+    STYLES,
+    TOKEN_COOKIE,
+    add_headers,
+    prepend_scripts,
+    with_head,
+)
 
 PAGE = b"<html><head><title>Diorama</title></head></html>"
 
@@ -46,3 +54,12 @@ def test_every_answer_has_the_security_headers_and_the_token_only_where_it_was_b
     assert f"{TOKEN_COOKIE}=s3cret" in answer.headers["Set-Cookie"]
     assert "HttpOnly" in answer.headers["Set-Cookie"]
     assert "SameSite=Strict" in answer.headers["Set-Cookie"]
+
+
+def test_our_title_styles_and_scripts_come_first() -> None:
+    page = with_head(b"<html><head><title>Viser</title><script>viser()</script></head><body></body></html>")
+    assert b"<title>Diorama</title>" in page
+    assert b"Viser</title>" not in page
+    assert page.count(b"\n<style>") == len(STYLES)
+    assert page.count(b"\n<script>") == len(SCRIPTS)
+    assert page.index(STYLES[0].read_bytes()) < page.index(SCRIPTS[0].read_bytes()) < page.index(b"viser()")
