@@ -99,6 +99,8 @@ class LayoutSettings:
     """Cost of moving on a supporter, against moving in the picture."""
     reaches_m: tuple[float, ...] = (0.15, 0.6, 2.0)
     """Distances looked through in turn for a free place: near ones need only near neighbours."""
+    left_overlap: float = 2.0
+    """Cost of a pair that is left overlapping, which is made smaller then: of a move by a metre across the picture."""
     max_pairs: int = 12
     """With more pairs in collision sizes are left alone: a crowd is parted by moves."""
     worth: float = 0.8

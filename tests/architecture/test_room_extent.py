@@ -222,6 +222,15 @@ def test_a_wall_of_the_photo_yields_to_what_was_measured_and_pulls_nothing_to_it
     assert all(by_photo(away).support_of(o.id).adheres_to for o in away.objects)
 
 
+def test_an_assumed_wall_goes_back_to_what_was_measured_against_it() -> None:
+    room = Room(LIBRARY)
+    half = LIBRARY.shape("cabinet_10").size_m[0] / 2
+    room.put("cabinet_10", (0.0, 2.6, 0.4), yaw=-np.pi / 2, adheres_to=("wall_1",))
+    observed = room.scene(architecture=sliver(0.15), camera=looking_north(5.0))
+    assert wall_y(containing_room(observed)) == pytest.approx(2.6 + half, abs=0.02)
+    assert wall_y(containing_room(observed, objects_measured=False)) == pytest.approx(2.5)
+
+
 def test_floor_drawn_out_behind_a_wall_goes_when_nothing_stands_on_it_any_more() -> None:
     room = Room(LIBRARY)
     behind = room.put("box_24", (0.2, 3.2, 0.15))

@@ -122,3 +122,15 @@ def test_a_picture_that_was_measured_turned_from_its_wall_or_far_from_it_hangs_o
     scene = room.scene(camera=looking_north())
     assert (detach_out_of_reach(scene, LIBRARY, MEASURED)[0].support_of(picture) is not None) == stays
     assert detach_out_of_reach(scene, LIBRARY, REASONED) == (scene, ())
+
+
+@pytest.mark.parametrize(("beside_m", "gap_m", "reached"), [(0.05, 0.0, True), (0.0, 0.1, True), (0.05, 0.1, False)])
+def test_what_is_measured_both_beside_and_above_a_place_is_farther_from_it(
+    room: Room, beside_m: float, gap_m: float, reached: bool
+) -> None:
+    table = room.put("table_0", (0.0, 1.0, 0.37))
+    size, height = room.objects[0].size_m, room.library.shape("cup_21").size_m[2]
+    at = (size[0] / 2 + beside_m, 1.0, size[2] + gap_m + height / 2)
+    cup = room.put("cup_21", at, on=table)
+    scene = room.scene(camera=looking_north())
+    assert (detach_out_of_reach(scene, LIBRARY, MEASURED)[0].support_of(cup) is not None) == reached

@@ -221,7 +221,8 @@ def _apart(program: Program, rounds: int, check: Callable[[np.ndarray, float], N
     if not program.tried:
         return together
     ways = [relax(program, way) for way in (together, relocate(program, base(program)))]
-    best = min(ways, key=lambda way: (len(way.stuck), float(program.cost(way.y))))
+    left = program.problem.settings.left_overlap
+    best = min(ways, key=lambda way: left * len(way.stuck) + float(program.cost(way.y)))
     check(best.y, best.depth_m)
     return best
 

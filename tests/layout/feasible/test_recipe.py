@@ -8,7 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.errors import Cancelled, InputError
+from diorama_core.layout.feasible import recipe as feasible
 from diorama_core.layout.feasible.recipe import FeasibleRecipe
+from diorama_core.layout.feasible.separate import Program, Separation
 from diorama_core.layout.recipes import NAMES, recipe
 from diorama_core.layout.settings import LAYOUT
 from diorama_core.progress import CancelToken, Progress
@@ -334,3 +336,22 @@ def test_without_a_photo_sizes_stay(room: Room) -> None:
     moved, scale, _ = solved(room.scene(), box)
     assert moved > 0.1
     np.testing.assert_allclose(scale, 1.0)
+
+
+def test_a_room_is_not_moved_about_for_one_small_overlap(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
+    for k in range(2):
+        room.put("box_24", (0.1 * k, 0.0, 0.15), id=f"box {k}")
+
+    def moved(program: Program, distance_m: float, *stuck: tuple[int, int]) -> Separation:
+        return Separation(np.full(program.J.shape[2], distance_m), 0.0, stuck)
+
+    def far_away(program: Program, **_: object) -> Separation:
+        program.tried[0, 1] = []
+        return moved(program, 6.0)
+
+    monkeypatch.setattr(feasible, "separate", far_away)
+    monkeypatch.setattr(feasible, "relocate", lambda program, _: moved(program, 0.1, (0, 1)))
+    monkeypatch.setattr(feasible, "relax", lambda _, way: way)
+    scene, report = solve(room.scene(camera=looking_north()))
+    assert np.abs(positions(scene)["box 0"] - room.scene().object("box 0").pose.position).max() < 0.3
+    assert any("still overlap" in reason for reason in report.reasons)

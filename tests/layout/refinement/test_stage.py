@@ -90,3 +90,13 @@ def test_it_can_be_cancelled(room: Room) -> None:
     objects, stage = seen_objects(scene, LIBRARY), MaskRefinement.of(LIBRARY, depth_measured=False)
     with pytest.raises(Cancelled):
         stage.refine(scene, LayoutReport("feasible", {}, {}, 0.0), scene, objects, Progress(token=token))
+
+
+def test_a_height_that_the_layout_gave_is_not_taken_back(room: Room) -> None:
+    """Its lower end was hidden: what was seen of its height says nothing against the floor that it now stands on."""
+    room.put("wardrobe_12", (0.0, 0.4, 1.5), id="wardrobe", scale=(1.0, 1.0, 0.5))
+    observed = room.scene(camera=looking_down())
+    whole = Pose.upright((0.0, 0.4, 1.0), 0.0)
+    settled = edits.place(observed, {"wardrobe": whole})
+    after = refined(settled, observed, seen_objects(settled, LIBRARY)).object("wardrobe").pose
+    assert after.scale[2] == pytest.approx(1.0, abs=0.03)
