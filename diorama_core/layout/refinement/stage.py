@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from jaxtyping import Float
 
 from diorama_core.artefacts import DetectedObject, LayoutReport
 from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
@@ -27,7 +28,7 @@ from diorama_core.layout.what_got_worse import disagreement_in_words
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.scene import edits
-from diorama_core.scene.types import Camera, Scene
+from diorama_core.scene.types import Camera, Pose, Scene
 
 
 @dataclass(frozen=True)
@@ -67,8 +68,10 @@ class MaskRefinement:
         if scene.camera is None or all(item is None for item in detected_objects):
             return scene, report
         seen = [observed.object(name).pose for name in problem.ids]
-        tall = [replace(o, scale=np.array([*o.scale[:2], z])) for o, z in zip(seen, problem.scale[:, 2], strict=True)]
-        priors = [PosePrior(scene.camera.position, pose, self.precision, self.settings) for pose in tall]
+        priors = [
+            PosePrior(scene.camera.position, self._expected(pose, scale), self.precision, self.settings)
+            for pose, scale in zip(seen, problem.scale, strict=True)
+        ]
         picture = self._picture(scene, scene.camera, problem, detected_objects)
         none = np.zeros(4)
         boxes = np.array([none if o is None else o.box for o in detected_objects], dtype=np.float64)
@@ -84,6 +87,12 @@ class MaskRefinement:
         seconds = report.seconds + time.perf_counter() - begun
         refined = edits.place(scene, problem.poses(poses.R, poses.position, poses.scale))
         return refined, _update_report(replace(report, seconds=seconds), as_observed, scene.camera, poses)
+
+    def _expected(self, seen: Pose, settled_scale: Float[np.ndarray, "3"]) -> Pose:
+        """The observed pose; of measured objects as high as the layout made them, which knows what was hidden below."""
+        if self.precision.sizes_follow:
+            return seen
+        return replace(seen, scale=np.array([*seen.scale[:2], settled_scale[2]]))
 
     def _picture(
         self, scene: Scene, camera: Camera, problem: Problem, detected_objects: Sequence[DetectedObject | None]
