@@ -152,15 +152,7 @@ def _row(name: str, stage: LayoutStage | None, rooms: Sequence[GeneratedRoom], p
         scene = room.observed if stage is None else stage.optimise(room.observed, Progress())[0]
         seconds.append(time.thread_time() - begun)
         problem = build_problem(room.observed, library)
-        objects = [scene.object(i).pose for i in problem.ids]
-        measured.append(
-            measure(
-                problem,
-                np.array([o.R_world_object for o in objects]),
-                np.array([o.position for o in objects]),
-                np.array([o.scale for o in objects]),
-            )
-        )
+        measured.append(measure(problem, problem.with_poses_of(scene)))
         offsets.append(offset_m(room.truth, scene))
         overlap_before += mesh_overlap_m3(room.observed, library)
         overlap_after += mesh_overlap_m3(scene, library)
@@ -245,11 +237,10 @@ def _drags(seed: int, feasible: LayoutStage) -> list[Callable[[], object]]:
 def refinement_speedup(scene: Scene, steps: int = 2) -> float:
     """How much faster a step of the batched stage 4 is than summing `e_col` pair by pair through autograd."""
     problem = build_problem(scene, box_library())
-    state = staged.State(problem.R.copy(), problem.p.copy(), problem.scale.copy())
-    schedule = staged.StageSchedule()
+    state = staged.State(problem, staged.StageSchedule(), lambda *_: None)
     begun = time.thread_time()
-    staged.refinement_stage(problem, state, schedule, lambda *_: None)
-    batched = (time.thread_time() - begun) / schedule.steps
+    staged.refinement_stage(state)
+    batched = (time.thread_time() - begun) / state.schedule.steps
     R, size = torch.tensor(problem.R), torch.tensor(problem.shape_size * problem.scale)
     begun = time.thread_time()
     for _ in range(steps):

@@ -355,10 +355,4 @@ def structure_of(scene: Scene, library: ShapeLibrary) -> dict[str, float]:
     if not scene.objects:
         return {"orientation": 0.0, "placement": 0.0, "structure": 0.0, "box_overlap_m": 0.0}
     problem = build_problem(scene, library)
-    poses = [scene.object(i).pose for i in problem.ids]
-    return measure(
-        problem,
-        np.array([p.R_world_object for p in poses]),
-        np.array([p.position for p in poses]),
-        np.array([p.scale for p in poses]),
-    )
+    return measure(problem, problem)

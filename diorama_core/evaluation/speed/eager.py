@@ -36,10 +36,8 @@ def step_seconds(way: str, count: int, seed: int) -> float | None:
 
 
 def _ours(problem: Problem) -> float:
-    schedule = staged.StageSchedule()
-    state = staged.State(problem.R.copy(), problem.p.copy(), problem.scale.copy())
-    work = partial(staged.refinement_stage, problem, state, schedule, lambda *_: None)
-    return cost_of(work).seconds / schedule.steps
+    state = staged.State(problem, staged.StageSchedule(), lambda *_: None)
+    return cost_of(partial(staged.refinement_stage, state)).seconds / state.schedule.steps
 
 
 def _tensors(problem: Problem, device: str) -> tuple[Tensor, Tensor, Tensor]:
