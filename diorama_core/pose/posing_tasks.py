@@ -111,7 +111,7 @@ def _task(
     foot_m = foot_height_m(scene.depth, item.mask, camera, settings.search) if held_by == "floor" else None
     measured = MeasuredObject.of(item.mask, fine, cuboid, anchor, walls, foot_m, settings)
     details = None if measured is None else Details.of(scene.inputs.photo.rgb, fine.seen, settings.evidence)
-    return PosingTask(item, cuboid, anchor, scene.carried(i), coarse, fine, measured, details, settings.search)
+    return PosingTask(item, cuboid, anchor, scene.loads(i), coarse, fine, measured, details, settings.search)
 
 
 @dataclass(frozen=True, eq=False)

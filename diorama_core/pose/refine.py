@@ -93,7 +93,7 @@ class BoxFit:
         extent = np.maximum(np.tile(box[2:] - box[:2], 2), 1.0)
         outward = (bounds - box) * np.array([-1.0, -1.0, 1.0, 1.0]) / (0.015 * extent + 1.5)
         outward = np.where(np.isnan(outward), 20.0, outward)
-        outward = np.where(self._hidden_sides & (outward > 0), self.settings.hidden_side * outward, outward)
+        outward = np.where(self._sides_hidden & (outward > 0), self.settings.hidden_side * outward, outward)
         robust = np.sign(outward) * _huber_residuals(np.abs(outward), self.settings)
         residual = np.concatenate([robust, x], axis=1)
         return (residual**2).sum(axis=1), residual
@@ -110,7 +110,7 @@ class BoxFit:
         return slopes.transpose(0, 2, 1)
 
     @cached_property
-    def _hidden_sides(self) -> Bool[np.ndarray, "4"]:
+    def _sides_hidden(self) -> Bool[np.ndarray, "4"]:
         """Sides of the box beside which nearer objects may hide more of the object."""
         x, y = self.seen.window.centres_px.T
         x1, y1, x2, y2 = self.seen.box

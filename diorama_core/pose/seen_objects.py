@@ -54,12 +54,12 @@ class Surroundings:
     def _noise(self) -> float:
         return noise_of(self.depth, self.settings)
 
-    def carried(self, i: int) -> tuple[Cuboid, ...]:
-        """What lies on an item."""
+    def loads(self, i: int) -> tuple[Cuboid, ...]:
+        """Cuboids of the items that lie on one."""
         return tuple(cuboid for cuboid, parent in zip(self.cuboids, self.parents, strict=True) if parent == i)
 
     def evidence(self, i: int, cells: int, *, loads_apart: bool = False) -> Evidence:
-        """What the picture says of an item at a resolution, what lies on it left out where asked."""
+        """Observations of an item at a resolution, what lies on it left out where asked."""
         item, camera = self.items[i], self.geometry.camera
         centres = np.array([c.centre for c in self.cuboids]).reshape(-1, 3)
         seen = observe_among(camera, self.items, centres, self.parents, i, cells, loads_apart=loads_apart)
@@ -157,7 +157,7 @@ def observe_objects(
             item.pixels,
             item.mask_confidence,
             item.category,
-            scene.carried(k),
+            scene.loads(k),
             settings,
         )
 

@@ -8,7 +8,7 @@ from diorama_core.arrangement.support_hypotheses import visible_shares_below
 
 
 def shares(**masks: tuple[slice, slice]) -> dict[str, dict[str, float]]:
-    """What is seen below rectangles of rows and columns."""
+    """Shares seen below rectangles of rows and columns."""
     drawn = {name: np.zeros((240, 320), dtype=bool) for name in masks}
     for name, at in masks.items():
         drawn[name][at] = True

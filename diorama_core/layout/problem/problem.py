@@ -158,11 +158,11 @@ class Problem:
     def with_poses(
         self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
     ) -> Problem:
-        """The same objects in other poses."""
+        """This problem with its objects in other poses."""
         return replace(self, R=R, p=p, scale=scale)
 
     def with_poses_of(self, scene: Scene) -> Problem:
-        """The same objects in the poses that they have in a scene."""
+        """This problem with its objects in the poses that they have in a scene."""
         poses = [scene.object(name).pose for name in self.ids]
         return self.with_poses(
             np.array([pose.R_world_object for pose in poses]).reshape(-1, 3, 3),

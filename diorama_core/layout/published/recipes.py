@@ -32,7 +32,7 @@ TOGETHER = StageSchedule(steps=400, decay_every=100)
 
 @dataclass(frozen=True)
 class _Recipe:
-    """What both recipes are given."""
+    """Steps of a schedule, and the scene and report that they lead to."""
 
     library: ShapeLibrary
     only: frozenset[str] | None = None
@@ -45,7 +45,7 @@ class _Recipe:
 
     @property
     def _stages(self) -> tuple[Callable[[State], None], ...]:
-        """What is done one after another."""
+        """Done one after another."""
         raise NotImplementedError
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
