@@ -31,10 +31,7 @@ REASONED_M = 0.3
 def detach_out_of_reach(scene: Scene, library: ShapeLibrary, noise: ObservationNoise) -> tuple[Scene, tuple[str, ...]]:
     """Detach the objects that their supporters do not reach; the new scene, and what people should look at.
 
-    Args:
-        scene: as observed, before any layout, its shapes decided.
-        library: where shapes come from.
-        noise: of the observed positions; what was reasoned from a photo alone only contradicts the height of furniture.
+    What was reasoned from a photo alone only contradicts the height of furniture.
     """
     reasons = []
     for item in scene.objects:

@@ -200,8 +200,7 @@ RIM_SHARE = 0.01
 def visible_shares_below(masks: Mapping[str, Bool[np.ndarray, "h w"]]) -> dict[str, dict[str, float]]:
     """For each object the share of its lower rim below which each other object is seen.
 
-    Args:
-        masks: by object, all of one photo; where masks overlap, the smaller object lies in front.
+    Where masks overlap, the smaller object lies in front.
     """
     if not masks:
         return {}
@@ -244,13 +243,7 @@ class ObservationNoise:
     def tolerance_m(
         self, camera: Camera | None, position: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]
     ) -> float:
-        """Two standard deviations of a position in one direction of the world; without a camera, those across.
-
-        Args:
-            camera: in the world.
-            position: of the object, in the world (m).
-            direction: unit, in the world.
-        """
+        """Two standard deviations of a position in one direction of the world; without a camera, those across."""
         if camera is None:
             return 2.0 * self.across_m
         sight = position - camera.position

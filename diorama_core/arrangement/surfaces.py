@@ -74,14 +74,10 @@ class RestingSurface:
         """The surface at its owner's pose."""
         return self if pose is None else self.transform(pose.R_world_object, pose.position, pose.scale)
 
-    def transform(self, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> RestingSurface:
-        """The surface of an owner with this rotation, centre and scale.
-
-        Args:
-            R: rotation (3, 3) from the owner's frame to the world.
-            p: the owner's centre in the world (m).
-            scale: per axis of the owner.
-        """
+    def transform(
+        self, R: Float[np.ndarray, "3 3"], p: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]
+    ) -> RestingSurface:
+        """The surface, in the world, of an owner with this rotation to it, this centre and this scale."""
         if self.of_plane:
             return self
         axis = int(np.abs(self.normal).argmax())
@@ -164,10 +160,7 @@ def choose_surface(scene: Scene, item: SceneObject, edge: Support, supporter: Sh
     """The surface on which the child of an edge rests, as observed.
 
     Args:
-        scene: with the object and its supporter.
-        item: the child, as observed.
-        edge: what it rests on.
-        supporter: shape of the parent; None where the parent is a plane of the room.
+        scene, item, edge, supporter: as of `possible_surfaces`.
     """
     options = possible_surfaces(scene, item, edge, supporter)
     if len(options) == 1:
@@ -260,8 +253,7 @@ def choose_contact(
     """Outward normal of the face that touches the supporter, in the object frame.
 
     Args:
-        scene: with the object and its supporter.
-        item: the child.
+        scene, item: with the object and its supporter; the object.
         edge: what it rests on; its bottom touches where there is none.
         surface: of the supporter, in the supporter's object frame; that of a plane in the world.
     """
@@ -311,10 +303,8 @@ def is_wide_enough(item: SceneObject, edge: Support, supporter: SceneObject, sha
     """Whether some surface of a supporter is at least `SMALLEST_SHARE` as wide as the object on it.
 
     Args:
-        item: the child.
-        edge: what it rests on.
-        supporter: the parent.
-        shape: of the parent.
+        item, edge: the object, and what it rests on.
+        supporter, shape: the parent and its shape.
     """
     if edge.relation == "mounted on":
         return True
@@ -418,13 +408,7 @@ def _most_plausible(
 
 
 def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape) -> list[RestingSurface]:
-    """Surfaces of another object, in the world, that lie below an object.
-
-    Args:
-        item: what may rest on them.
-        other: whose they are.
-        shape: the other's.
-    """
+    """Surfaces of another object, in the world, that lie below an object."""
     if other.id == item.id:
         return []
     candidates = (surface.to_world(other.pose) for surface in object_surfaces(shape, other))
@@ -436,9 +420,7 @@ def resting_cost(scene: Scene, item: SceneObject, edge: Support, surface: Restin
     """Distance in metres of an object's touching face from a surface (world), and by which it misses it.
 
     Args:
-        scene: with the object and its supporter.
-        item: the child.
-        edge: what it rests on.
+        scene, item, edge: with the object and its supporter; the object, and what it rests on.
         surface: in the world.
     """
     contact = choose_contact(scene, item, edge, surface)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -64,6 +65,13 @@ class PaddedParts:
     counts: Int[np.ndarray, "b 3"]
     """Counts of vertices, normals and edges, without the padding."""
     owner: Int[np.ndarray, " b"]
+
+    @cached_property
+    def reach(self) -> Float[np.ndarray, "n 3"]:
+        """Half extents of a box around each object's centre that contains its parts, at scale 1, its own axes."""
+        reach = np.zeros((int(self.owner.max(initial=-1)) + 1, 3))
+        np.maximum.at(reach, self.owner, np.abs(self.vertices).max(axis=1, initial=0.0))
+        return reach
 
     def select(self, objects: Bool[np.ndarray, " n"]) -> PaddedParts:
         """The parts of some of the objects."""

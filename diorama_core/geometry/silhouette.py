@@ -17,7 +17,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.geometry.projection import NEAR_M, edges_of_cuboid, frustum_slack
 from diorama_core.geometry.ray_scene import RayScene
-from diorama_core.scene.types import Camera, box_corners
+from diorama_core.scene.types import Camera, Pose, box_corners
 
 _MIN_EXTENT_M = 1e-4
 _HULL_DIRECTIONS = 48
@@ -36,6 +36,11 @@ class PoseBatch:
 
     def __getitem__(self, chosen: slice | np.ndarray) -> PoseBatch:
         return PoseBatch(self.R[chosen], self.position[chosen], self.scale[chosen])
+
+    @classmethod
+    def single(cls, pose: Pose) -> PoseBatch:
+        """One pose alone."""
+        return cls(pose.R_world_object[None], pose.position[None], pose.scale[None])
 
     def and_also(self, other: PoseBatch) -> PoseBatch:
         """These poses and then those."""

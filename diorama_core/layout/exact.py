@@ -25,12 +25,8 @@ _CLOSED: LruCache[str, manifold3d.Manifold | None] = LruCache(1024)
 def mesh_overlap_m3(scene: Scene, library: ShapeLibrary, *, skip_supporters: bool = True) -> float:
     """Volume in cubic metres shared by the objects' meshes, summed over pairs.
 
-    Meshes that are not closed are replaced by the hulls of their convex parts.
-
-    Args:
-        scene: posed objects.
-        library: their meshes.
-        skip_supporters: leave out pairs of an object and what holds it up, which touch on purpose.
+    Meshes that are not closed are replaced by the hulls of their convex parts. Pairs of an object and what holds it up,
+    which touch on purpose, may be left out.
     """
     problem = build_problem(scene, library)
     corners = [scene.object(name).corners_world for name in problem.ids]

@@ -19,102 +19,71 @@ USUAL_ERRORS = np.array([np.deg2rad(1.0), 1e-3, 1e-3])
 """Up to these `support_errors` an object is aligned with its support, on it and inside its bounds."""
 
 
-def measure(
-    problem: Problem,
-    R: Float[np.ndarray, "n 3 3"],
-    p: Float[np.ndarray, "n 3"],
-    scale: Float[np.ndarray, "n 3"],
-) -> dict[str, float]:
-    """The report's figures for one layout of the problem's objects.
+def measure(observed: Problem, now: Problem) -> dict[str, float]:
+    """The report's figures for a layout of some objects, against how they were observed.
 
     `orientation`, `placement`, `structure`, `in_support`: shares of supported objects within 1 degree and 0.1 cm of
     their support, and inside its bounds and clearance. `part_overlap_m`: deepest overlap of convex parts (0 when
     apart); `part_overlap_mean_m` and `overlapping_pairs` say how widespread. `box_overlap_m`: overlap of bounding
     boxes per object, tucked chairs included. `moved_m`: mean distance from the observed positions. `e_...`: the
     published costs.
-
-    Args:
-        problem: the layout as observed, with its supports.
-        R: rotations, world from object.
-        p: centres, world, metres.
-        scale: along the axes of each object.
     """
-    supported = [surface is not None for surface in problem.surface]
-    aligned, placed, inside = (support_errors(problem, R, p, scale)[supported] <= USUAL_ERRORS).T
-    depths = part_overlaps(problem, R, p, scale)
-    moved = np.linalg.norm(p - problem.p, axis=1)
+    supported = [surface is not None for surface in now.surface]
+    aligned, placed, inside = (support_errors(now)[supported] <= USUAL_ERRORS).T
+    depths = part_overlaps(now)
+    moved = np.linalg.norm(now.p - observed.p, axis=1)
     return {
         "orientation": _share(aligned),
         "placement": _share(placed),
         "structure": _share(aligned & placed),
         "in_support": _share(inside),
         "part_overlap_m": max(depths.values(), default=0.0),
-        "part_overlap_mean_m": sum(depths.values()) / max(problem.count, 1),
+        "part_overlap_mean_m": sum(depths.values()) / max(now.count, 1),
         "overlapping_pairs": float(len(depths)),
-        "box_overlap_m": _box_overlap(problem, R, p, scale),
+        "box_overlap_m": _box_overlap(now),
         "moved_m": float(moved.mean()) if len(moved) else 0.0,
         "moved_most_m": float(moved.max()) if len(moved) else 0.0,
-        **cost_values(problem, R, p, scale),
+        **cost_values(observed, now),
     }
 
 
 def layout_figures(start: Scene, now: Scene, library: ShapeLibrary) -> dict[str, float]:
     """The report's figures for a scene, against how its objects were observed at the start of a run.
 
-    Args:
-        start: the scene before the run.
-        now: the scene, perhaps with objects that are new or lack.
-        library: where shapes come from.
+    Objects may be new now, or lack.
     """
     remaining = tuple(o for o in start.objects if now.has_object(o.id))
     gone = {o.id for o in start.objects} - {o.id for o in remaining}
     supports = tuple(s for s in start.supports if gone.isdisjoint((s.child, s.parent)))
     problem = build_problem(replace(start, objects=remaining, supports=supports), library)
-    poses = [now.object(i).pose for i in problem.ids]
-    return measure(
-        problem,
-        np.array([p.R_world_object for p in poses]).reshape(-1, 3, 3),
-        np.array([p.position for p in poses]).reshape(-1, 3),
-        np.array([p.scale for p in poses]).reshape(-1, 3),
-    )
+    return measure(problem, problem.with_poses_of(now))
 
 
-def cost_values(
-    problem: Problem,
-    R: Float[np.ndarray, "n 3 3"],
-    p: Float[np.ndarray, "n 3"],
-    scale: Float[np.ndarray, "n 3"],
-) -> dict[str, float]:
-    """The published costs of a layout (`layout.costs`), support edges only.
-
-    Args:
-        problem: the layout as observed, with its supports.
-        R: rotations, world from object.
-        p: centres, world, metres.
-        scale: along the axes of each object.
-    """
-    volumes = Volumes.of(problem)
+def cost_values(observed: Problem, now: Problem) -> dict[str, float]:
+    """The published costs of a layout (`layout.costs`), support edges only."""
+    R, p, scale = now.R, now.p, now.scale
+    volumes = Volumes.of(now)
     supported = volumes.supported
     if not len(supported):
         return dict.fromkeys(("e_align", "e_sem", "e_place", "e_rel", "e_vol", "e_col"), 0.0)
-    here, size = volumes.world_volumes(R, p, scale), problem.shape_size * scale
-    faces, half = contact_templates(problem, supported)
+    here, size = volumes.world_volumes(R, p, scale), now.shape_size * scale
+    faces, half = contact_templates(now, supported)
     corners = p[supported][:, None] + np.matmul(faces * scale[supported][:, None], R[supported].transpose(0, 2, 1))
     tilt = np.abs(np.matmul(here.normal[:, None, :], R[supported])[:, 0]) * half * scale[supported]
     top = (here.normal * p[supported]).sum(axis=1) - here.level + tilt.sum(axis=1)
-    inward = -np.matmul(R[supported], problem.contact[supported][..., None])[..., 0]
+    inward = -np.matmul(R[supported], now.contact[supported][..., None])[..., 0]
     centre = corners.mean(axis=1)
     foot = centre - ((centre * here.normal).sum(axis=1) - here.level)[:, None] * here.normal
-    pairs = candidate_pairs(R, p, size, ~problem.kin, 0.0)
-    boxes = BoxPairs.of(R, size, pairs, walls_from=problem.count)
-    links = gradients.incidence(problem.relations, problem.count)
+    pairs = candidate_pairs(R, p, size, ~now.kin, 0.0)
+    boxes = BoxPairs.of(R, size, pairs, walls_from=now.count)
+    links = gradients.incidence(now.relations, now.count)
     return {
         "e_align": gradients.align(inward, here.normal)[0],
-        "e_sem": gradients.semantic(R[:, :, 0].copy(), problem.R[:, :, 0])[0],
+        "e_sem": gradients.semantic(R[:, :, 0].copy(), observed.R[:, :, 0])[0],
         "e_place": gradients.place(centre, foot, here.normal)[0],
-        "e_rel": gradients.relative(p - problem.p, problem.relations, links)[0],
+        "e_rel": gradients.relative(p - observed.p, now.relations, links)[0],
         "e_vol": gradients.volume(corners, top, here.outward, here.offset, here.clearance)[0],
-        "e_col": boxes.collision(p, gradients.incidence(pairs, problem.count))[0] if len(pairs) else 0.0,
+        "e_col": boxes.collision(p, gradients.incidence(pairs, now.count))[0] if len(pairs) else 0.0,
     }
 
 
@@ -122,21 +91,11 @@ def _share(good: np.ndarray) -> float:
     return float(good.mean()) if len(good) else 1.0
 
 
-def support_errors(
-    problem: Problem,
-    R: Float[np.ndarray, "n 3 3"],
-    p: Float[np.ndarray, "n 3"],
-    scale: Float[np.ndarray, "n 3"],
-) -> Float[np.ndarray, "n 3"]:
+def support_errors(problem: Problem) -> Float[np.ndarray, "n 3"]:
     """How far each object is from resting on its support: radians by which it is tilted, metres by which it is off the
     surface, and metres by which it leaves the bounds and the clearance of that; 0 where nothing supports it.
-
-    Args:
-        problem: the layout as observed, with its supports.
-        R: rotations, world from object.
-        p: centres, world, metres.
-        scale: along the axes of each object.
     """
+    R, p, scale = problem.R, problem.p, problem.scale
     volumes = Volumes.of(problem)
     here, supported = volumes.world_volumes(R, p, scale), volumes.supported
     size, contact = problem.shape_size[supported] * scale[supported], problem.contact[supported]
@@ -157,42 +116,31 @@ def support_errors(
     return errors
 
 
-def _box_overlap(problem: Problem, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> float:
+def _box_overlap(problem: Problem) -> float:
     """Overlap depth of bounding boxes, summed over the pairs that should be apart, per object."""
-    size = problem.shape_size * scale
-    pairs = candidate_pairs(R, p, size, ~problem.kin, 0.0)
+    p, size = problem.p, problem.shape_size * problem.scale
+    pairs = candidate_pairs(problem.R, p, size, ~problem.kin, 0.0)
     if not len(pairs):
         return 0.0
-    boxes = BoxPairs.of(R, size, pairs, walls_from=problem.count)
+    boxes = BoxPairs.of(problem.R, size, pairs, walls_from=problem.count)
     depth = (boxes.reach - np.abs(np.matmul(boxes.axes, (p[boxes.i] - p[boxes.j])[..., None])[..., 0])).min(axis=1)
     return float(np.maximum(depth, 0.0).sum()) / problem.count
 
 
 def part_overlaps(
-    problem: Problem,
-    R: Float[np.ndarray, "n 3 3"],
-    p: Float[np.ndarray, "n 3"],
-    scale: Float[np.ndarray, "n 3"],
-    *,
-    only: int | None = None,
-    supporters: bool = False,
+    problem: Problem, *, only: int | None = None, supporters: bool = False
 ) -> dict[tuple[int, int], float]:
-    """Depth in metres by which convex parts of two objects overlap, for the pairs that do.
+    """Depth in metres by which convex parts of two objects overlap, for the pairs that do; of one object only those.
 
-    Args:
-        problem: the objects.
-        R: their rotations.
-        p: their centres.
-        scale: their scales.
-        only: the pairs of this one object.
-        supporters: with the pairs of an object and what holds it up, which touch; rugs and soft things are left out.
+    With supporters those of an object and what holds it up, which touch, are looked at too; rugs and soft things are
+    left out.
     """
     apart = ~(np.eye(problem.count, dtype=bool) | problem.yielding if supporters else problem.kin)
     packed = problem.packed
     if only is not None:
-        near = _neighbours(problem, only, R, p, scale) & apart[only]
+        near = _neighbours(problem, only) & apart[only]
         packed = packed.select(near | (np.arange(problem.count) == only))
-    bodies = place_bodies(packed, R, p, scale)
+    bodies = place_bodies(packed, problem.R, problem.p, problem.scale)
     near_parts = np.triu(apart, 1)[bodies.owner[:, None], bodies.owner[None]]
     if only is not None:
         near_parts &= (bodies.owner[:, None] == only) | (bodies.owner[None] == only)
@@ -209,7 +157,7 @@ def part_overlaps(
     return depths
 
 
-def _neighbours(problem: Problem, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> Bool[np.ndarray, " n"]:
+def _neighbours(problem: Problem, i: int) -> Bool[np.ndarray, " n"]:
     """Objects of which the upright box around their parts meets that of object i."""
-    half = np.matmul(np.abs(R), (problem.reach * scale)[..., None])[..., 0]
-    return (np.abs(p - p[i]) < half + half[i]).all(axis=1)
+    half = np.matmul(np.abs(problem.R), (problem.packed.reach * problem.scale)[..., None])[..., 0]
+    return (np.abs(problem.p - problem.p[i]) < half + half[i]).all(axis=1)

@@ -29,13 +29,7 @@ class Settled:
     rounds: int = 60
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
-        """The scene with other places, and the overlap of boxes before and after in metres.
-
-        Args:
-            scene: as observed.
-            progress: reports and cancellation.
-            preview: called with the layout as it becomes.
-        """
+        """The scene with other places, and the overlap of boxes before and after in metres."""
         begun = time.perf_counter()
         progress.report(0.0, "Lowering objects onto what supports them")
         moved = {o.id: o.pose for o in scene.objects}

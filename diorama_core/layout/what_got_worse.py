@@ -53,9 +53,7 @@ def resizes_in_words(start: Scene, final: Scene) -> tuple[str, ...]:
 def with_believed_sizes(start: Scene, final: Scene) -> Scene:
     """A layout with sizes that stay near those at its start; each object stays on its base.
 
-    Args:
-        start: where sizes are believed.
-        final: what a recipe made of it; what stands on an object rises and sinks with its top.
+    What stands on an object rises and sinks with its top.
     """
     for object_id in (i for i in top_down(final) if start.has_object(i)):
         was, now = start.object(object_id).size_m, final.object(object_id).size_m
@@ -77,13 +75,7 @@ def new_problems(before: Problems, after: Problems) -> dict[str, tuple[str, ...]
 
 
 def describe_worse(report: LayoutReport, worse: Problems, labels: Mapping[str, str]) -> tuple[str, ...]:
-    """One sentence for everything that got worse; empty where nothing did.
-
-    Args:
-        report: figures before and after.
-        worse: problems that are new, by object id.
-        labels: what objects are called.
-    """
+    """One sentence for everything that got worse; empty where nothing did."""
     lines = []
     for word in sorted({w for words in worse.values() for w in words}):
         names = [labels.get(i, i) for i, words in worse.items() if word in words]
@@ -110,16 +102,13 @@ def disagreement_in_words(disagreement: PhotoDisagreement) -> str:
 
 
 def _verb(word: str, count: int) -> str:
-    singular = {
-        "floats": "1 object floats",
-        "collides": "1 object collides",
-        "outside": "1 object left the room",
-        RESIZED: "1 object was resized",
+    verbs = {
+        "floats": ("floats", "float"),
+        "collides": ("collides", "collide"),
+        "outside": ("left the room", "left the room"),
+        RESIZED: ("was resized", "were resized"),
     }
-    plural = {
-        "floats": "objects float",
-        "collides": "objects collide",
-        "outside": "objects left the room",
-        RESIZED: "objects were resized",
-    }
-    return singular.get(word, f"1 object {word}") if count == 1 else f"{count} {plural.get(word, f'objects: {word}')}"
+    one, many = verbs.get(word, (word, None))
+    if count == 1:
+        return f"1 object {one}"
+    return f"{count} objects {many}" if many else f"{count} objects: {word}"

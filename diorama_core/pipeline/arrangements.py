@@ -26,12 +26,8 @@ Alike = Callable[[str, str], float]
 def arrangement(observed: Scene, rank: int, alike: Alike | None = None) -> Scene:
     """The observed scene with every set in the `rank`-th of its plausible shapes, posed as fitted to the picture.
 
-    A set with fewer plausible shapes takes its last; what is locked stays.
-
-    Args:
-        observed: Before any layout, as the stages saw it.
-        rank: 0 is the scene itself.
-        alike: Tells shapes of one form; None takes all shapes for different.
+    A set with fewer plausible shapes takes its last; what is locked stays. Where nothing tells shapes of one form
+    (`alike`), all shapes are taken for different.
     """
     scene = observed
     for members in _sets(observed):
@@ -53,12 +49,8 @@ def plausible_shapes(
 ) -> tuple[str, ...]:
     """The shape that a set has, then those that its members together find likely, best first, each of another form.
 
-    Objects that are not painted in a colour of the photo keep their shapes' own, which differ.
-
-    Args:
-        members: The objects of the set.
-        alike: Tells shapes of one form; None takes all shapes for different.
-        chosen_id: What comes first; the first member's shape by default.
+    Objects that are not painted in a colour of the photo keep their shapes' own, which differ. Where nothing tells
+    shapes of one form (`alike`), all shapes are taken for different.
     """
     chosen_id = members[0].shape_id if chosen_id is None else chosen_id
     totals: dict[str, float] = {}

@@ -37,11 +37,7 @@ class LooksAhead(Protocol):
     """A stage that can load things before its turn; its result does not depend on whether it did."""
 
     def ahead(self, boxes: Sequence[LabelledBox]) -> Iterator[None]:
-        """Load what these objects will need, one step at a time.
-
-        Args:
-            boxes: what was marked in the photo.
-        """
+        """Load what these objects will need, one step at a time."""
         ...
 
 

@@ -72,9 +72,9 @@ class NetworkChoice:
         Raises:
             InputError: when the named one finds no boxes.
         """
-        return (
-            DETECTORS if self.detector is None else _select_names(self.detector, (*DETECTORS, OWN_DETECTOR), "detector")
-        )
+        if self.detector is None:
+            return DETECTORS
+        return _select_names(self.detector, (*DETECTORS, OWN_DETECTOR), "detector")
 
     def depth_networks(self) -> tuple[str, ...]:
         """Ids to look for, best first.
@@ -94,10 +94,6 @@ def best_here(store: ModelStore, choices: Sequence[str]) -> Network | None:
 
     Of two files of the same weights, the one in half precision is taken where a CUDA card calculates with it, and the
     full one elsewhere.
-
-    Args:
-        store: where networks lie.
-        choices: ids, best first.
     """
     here = [network(i) for i in choices if store.has(network(i))]
     if not here:

@@ -94,10 +94,6 @@ def dump(value: Any) -> bytes:
 def load(data: bytes, expected: Any = Any) -> Any:
     """The artefact that `dump` wrote.
 
-    Args:
-        data: the file's bytes.
-        expected: the type it must have, as annotated.
-
     Raises:
         ProjectError: when the bytes are damaged, of an unknown kind or larger than any real result.
     """

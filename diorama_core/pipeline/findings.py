@@ -4,7 +4,7 @@ camera, objects, room and scene graph come from.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -47,34 +47,17 @@ def drawing(name: str, known: Mapping[str, Any]) -> Segments:
     return tuple((x1, y1, x2, y2) for x1, y1, x2, y2 in lines.tolist())
 
 
-def _camera(camera: CameraEstimate) -> str:
-    view = np.degrees(camera.best.intrinsics.horizontal_fov_rad)
-    return f"field of view {view:.0f}°"
-
-
-def _room(room: ArchitectureEstimate) -> str:
-    return _count(len(room.architecture.by_role("wall")), "wall")
-
-
-def _objects(objects: Sequence[object]) -> str:
-    return _count(len(objects), "object")
-
-
-def _shapes(shapes: Sequence[object]) -> str:
-    return f"shapes for {_count(len(shapes), 'object')}"
-
-
 def _count(number: int, one: str) -> str:
     return f"1 {one}" if number == 1 else f"{number} {one}s"
 
 
 WORDS: dict[str, Callable[[Any], str]] = {
     "detected_boxes": lambda boxes: f"{_count(len(boxes), 'piece')} of furniture",
-    "camera": _camera,
-    "outlined_objects": _objects,
+    "camera": lambda camera: f"field of view {np.degrees(camera.best.intrinsics.horizontal_fov_rad):.0f}°",
+    "outlined_objects": lambda objects: _count(len(objects), "object"),
     "measured_geometry": lambda geometry: f"places of {_count(len(geometry.cuboids), 'object')}",
-    "architecture": _room,
-    "shapes": _shapes,
+    "architecture": lambda room: _count(len(room.architecture.by_role("wall")), "wall"),
+    "shapes": lambda shapes: f"shapes for {_count(len(shapes), 'object')}",
 }
 
 
@@ -88,12 +71,7 @@ _FOCAL = {
 
 
 def camera_sentence(estimate: CameraEstimate, depth: DepthSource) -> str:
-    """Where the focal length, the attitude and the height of the camera come from.
-
-    Args:
-        estimate: the camera.
-        depth: where the depth in the inputs comes from.
-    """
+    """Where the focal length, the attitude and the height of the camera come from."""
     source = estimate.source
     parts = [_FOCAL[source.focal], *_attitude(estimate, _Words(depth))]
     if source.no_level_surface:

@@ -68,10 +68,7 @@ class GivenCuboids:
         """The cuboids, and what holds them up as far as the photo tells.
 
         Args:
-            inputs: as given.
-            camera: as read from the photo.
-            objects: what was found in the photo, with masks.
-            progress: reports and cancellation.
+            inputs, camera, objects, progress: as documented in `protocols.GeometryStage`.
         """
         observations = gather(objects, inputs.photo.width, inputs.photo.height)
         view = View(self.camera.intrinsics, self.camera.T_world_camera[:3, :3])
@@ -93,10 +90,7 @@ class GivenRoom:
         """The room, with what the photo's objects stand on and hang from.
 
         Args:
-            inputs: as given.
-            objects: what was found in the photo, with masks.
-            geometry: the objects' cuboids, the camera, and what supports what.
-            progress: reports and cancellation.
+            inputs, objects, geometry, progress: as documented in `protocols.ArchitectureStage`.
         """
         walls = self.architecture.by_role("wall")
         seen = sum(w.is_seen for w in walls)
@@ -111,11 +105,5 @@ class AsObserved:
     """No layout: the scene as the photo shows it."""
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
-        """The scene as it is.
-
-        Args:
-            scene: as it is.
-            progress: reports and cancellation.
-            preview: called with the layout as it becomes.
-        """
+        """The scene as it is."""
         return scene, LayoutReport("none", {}, {}, 0.0)

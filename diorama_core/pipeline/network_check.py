@@ -7,7 +7,7 @@ channels must not.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,18 +57,9 @@ class Measurement:
 def check_networks(store: ModelStore, known: Inputs, progress: Progress = SILENT) -> tuple[NetworkCheck, ...]:
     """Try every network that is on this machine.
 
-    Args:
-        store: where they lie.
-        known: a photo of a room with boxes and intrinsics that are known to be right.
-        progress: reported for each network; honours cancelling.
+    `known` is a photo of a room with boxes and intrinsics that are known to be right.
     """
-    present = [n for n in NETWORKS if store.has(n)]
-    checks = []
-    for k, network in enumerate(present):
-        part = progress.part(k / len(present), (k + 1) / len(present))
-        part.report(0.0, network.title)
-        checks.append(_check(store, network, known, part))
-    return tuple(checks)
+    return tuple(_check_all(store, [n for n in NETWORKS if store.has(n)], known, progress, "{}"))
 
 
 def delete_failing_networks(
@@ -87,16 +78,22 @@ def delete_failing_networks(
     """
     unverified = [n for n in NETWORKS if n.id in network_ids and not n.has_checksums]
     failed = []
-    for k, network in enumerate(unverified):
-        part = progress.part(k / len(unverified), (k + 1) / len(unverified))
-        part.report(0.0, f"Trying {network.title}")
-        check = _check(store, network, known, part)
+    for check in _check_all(store, unverified, known, progress, "Trying {}"):
         if not check.ok:
-            for file in network.files:
-                SHARED_SESSIONS.release(store.folder_of(network) / file.path)
-            store.forget(network)
+            for file in check.network.files:
+                SHARED_SESSIONS.release(store.folder_of(check.network) / file.path)
+            store.forget(check.network)
             failed.append(check)
     return tuple(failed)
+
+
+def _check_all(
+    store: ModelStore, networks: Sequence[Network], known: Inputs, progress: Progress, words: str
+) -> Iterator[NetworkCheck]:
+    for k, network in enumerate(networks):
+        part = progress.part(k / len(networks), (k + 1) / len(networks))
+        part.report(0.0, words.format(network.title))
+        yield _check(store, network, known, part)
 
 
 def _check(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> NetworkCheck:
@@ -177,18 +174,20 @@ def _features(store: ModelStore, network: Network, known: Inputs, progress: Prog
 
 def _text_and_image(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:
     if network.id == "duoduoclip":
-        vector = network_stages.shape_tower(store, network).shape([known.photo.rgb])
-        return (Measurement("length of a shape's vector", float(np.linalg.norm(vector)), (0.99, 1.01)),)
+        return (_vector_length(network_stages.shape_tower(store, network).shape([known.photo.rgb])),)
     if network.id == "openshape":
         ball = np.random.default_rng(0).standard_normal((2000, 3))
         ball /= np.linalg.norm(ball, axis=1, keepdims=True)
-        vector = network_stages.point_tower(store, network).shape(ball, np.full((2000, 3), 0.5))
-        return (Measurement("length of a shape's vector", float(np.linalg.norm(vector)), (0.99, 1.01)),)
+        return (_vector_length(network_stages.point_tower(store, network).shape(ball, np.full((2000, 3), 0.5))),)
     clip = network_stages.open_clip(store, network)
     picture = clip.images([known.photo.rgb])[0]
     # The cosines are alike where a network ignores its input.
     right, wrong = clip.texts(["a photo of a room with furniture", "a photo of the sea"]) @ picture
     return (Measurement("cosine with the right words over wrong ones", float(right - wrong), (0.02, 2.0)),)
+
+
+def _vector_length(vector: np.ndarray) -> Measurement:
+    return Measurement("length of a shape's vector", float(np.linalg.norm(vector)), (0.99, 1.01))
 
 
 def _pose_scale(store: ModelStore, network: Network, known: Inputs, progress: Progress) -> tuple[Measurement, ...]:

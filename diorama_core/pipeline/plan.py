@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from diorama_core.architecture.along_sight import move_in_front_of_walls, snap_mounted_objects
+from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.architecture.walls.passages import without_openings
 from diorama_core.arrangement.explain import SCALE, reasons_of_change
 from diorama_core.arrangement.out_of_reach import detach_out_of_reach
@@ -35,6 +36,7 @@ from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
 from diorama_core.perception.language.relations import with_graph
 from diorama_core.pipeline.beliefs import with_beliefs
 from diorama_core.pipeline.beside import looking_ahead
+from diorama_core.pipeline.colours import room_illuminant
 from diorama_core.pipeline.findings import drawing, finding, graph_sentence
 from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.scene_steps import (
@@ -45,12 +47,8 @@ from diorama_core.pipeline.scene_steps import (
     enclose_objects,
     finish_scene,
     floor_object_ids,
-    illuminant,
     object_colours,
-    optimise_layout,
-    plane_pictures,
     position_noise,
-    refine_layout,
     white_balance_inputs,
     white_balance_room,
     with_network_inputs,
@@ -166,7 +164,11 @@ def reasons_of_build(
     reasons = [r for o in objects if o.id in kinds for r in _kind_reasons(o, kinds[o.id], named_by)]
     reasons += [r for p in posed for r in p.reasons or ()]
     reasons += geometry.reasons or ()
-    reasons += _depth_reasons(inputs, geometry, noise) + _support_reasons(graph, scene)
+    if inputs.depth_m is not None:
+        nats = min(0.5 * (SCALE.change / noise.along) ** 2, SCALE.max_nats)
+        word = "depth was measured there"
+        reasons += [Reason(c.object_id, "place", "depth", nats, "nats", word) for c in geometry.cuboids]
+    reasons += _support_reasons(graph, scene)
     reasons += corrected.reasons
     reasons += reasons_of_change(corrected.scene, settled.scene, "layout", "it rests on something, clear of the others")
     reasons += reasons_of_change(settled.scene, scene, "refinement", "its outline fits the photo better there")
@@ -197,15 +199,6 @@ def _kind_reasons(item: DetectedObject, kind: str, named_by: str) -> list[Reason
 
 def _kind_reason(item: DetectedObject, term: str, nats: float, sentence: str) -> Reason:
     return Reason(item.id, "kind", term, nats, "nats", sentence)
-
-
-def _depth_reasons(inputs: Inputs, geometry: ObjectGeometry, noise: ObservationNoise) -> list[Reason]:
-    """Evidence of measured depth for the places of objects."""
-    if inputs.depth_m is None:
-        return []
-    nats = min(0.5 * (SCALE.change / noise.along) ** 2, SCALE.max_nats)
-    word = "depth was measured there"
-    return [Reason(c.object_id, "place", "depth", nats, "nats", word) for c in geometry.cuboids]
 
 
 def _support_reasons(graph: SceneGraph | None, scene: Scene) -> list[Reason]:
@@ -270,7 +263,11 @@ PLAN: tuple[Step, ...] = (
     StageStep("retrieval", "retrieve", ("inputs", "furniture_objects", "geometry"), "shapes", 0.1),
     StageStep("pose", "pose", ("inputs", "furniture_objects", "geometry", "depth", "shapes"), "posed", 0.2),
     # The room's and the objects' colours are those that white light would show.
-    Derivation(illuminant, ("inputs", "objects", "architecture", "geometry"), "illuminant"),
+    Derivation(
+        lambda inputs, objects, room, geometry: room_illuminant(inputs, objects, room.architecture, geometry.camera),
+        ("inputs", "objects", "architecture", "geometry"),
+        "illuminant",
+    ),
     Derivation(white_balance_inputs, ("inputs", "illuminant"), "balanced_inputs"),
     Derivation(white_balance_room, ("architecture", "illuminant"), "white_room"),
     Derivation(object_colours, ("balanced_inputs", "furniture_objects", "posed"), "colours"),
@@ -309,14 +306,28 @@ PLAN: tuple[Step, ...] = (
     Derivation(floor_object_ids, ("white_room",), "standing"),
     Derivation(lambda stages: stages.filler, ("stages",), "filler"),
     Derivation(
-        plane_pictures,
+        lambda balanced, objects, geometry, scene, filler, standing: plane_textures(
+            balanced, objects, geometry.camera, scene.architecture, filler, standing
+        ),
         ("balanced_inputs", "objects", "geometry", "observed", "filler", "standing"),
         "plane_pictures",
         beside=True,
     ),
     Derivation(LaidOut, ("observed",), "not_laid_out"),
-    LayoutStep("layout", optimise_layout, ("not_laid_out", "preview"), "laid_out", 0.08),
-    LayoutStep("refinement", refine_layout, ("laid_out", "observed", "furniture_objects"), "refined", 0.06),
+    LayoutStep(
+        "layout",
+        lambda stage, observed, preview, progress: stage.optimise(observed.scene, progress, preview),
+        ("not_laid_out", "preview"),
+        "laid_out",
+        0.08,
+    ),
+    LayoutStep(
+        "refinement",
+        lambda stage, laid_out, *others: stage.refine(laid_out.scene, laid_out.report, *others),
+        ("laid_out", "observed", "furniture_objects"),
+        "refined",
+        0.06,
+    ),
     Derivation(finish_scene, ("refined", "appearance", "plane_pictures", "white_room", "inputs"), "finished"),
     Derivation(with_beliefs, ("finished", "inputs", "geometry", "posed", "supports", "noise", "library"), "scene"),
     Derivation(lambda finished: finished.textures, ("finished",), "textures"),
@@ -364,11 +375,11 @@ def evaluate(
             part = progress.part(done / whole, (done + step.share) / whole)
             done += step.share
             if step.beside:
-                begun[step.gives] = threads.submit(step.evaluate, stages, dict(known), runner, part)
+                begun[step.gives] = threads.submit(step.evaluate, dict(known), runner, part)
                 continue
             if step.gives == LOOKS_AHEAD:
                 ahead.close()
-            known[step.gives] = step.evaluate(stages, known, runner, part)
+            known[step.gives] = step.evaluate(known, runner, part)
             part.report_finding(finding(step.gives, known[step.gives]), drawing(step.gives, known))
         known |= {name: future.result() for name, future in begun.items()}
     return known

@@ -25,11 +25,6 @@ def acdc_stages(base: Stages, has_depth: bool, library: ShapeLibrary) -> Stages:
 
     Looks are compared as `base` compares them: in a joint embedding where its networks are on this machine. Without
     depth, measured or predicted, the room of `base` stays.
-
-    Args:
-        base: the stages of a profile.
-        has_depth: whether depth is measured or a network of `base` predicts it.
-        library: where shapes come from.
     """
     similarity = base.retrieval.similarity if isinstance(base.retrieval, HierarchicalRetrieval) else None
     views = base.pose if isinstance(base.pose, CorrespondencePose) else CorrespondencePose(library, grid=HALF_GRID)
@@ -54,11 +49,6 @@ def with_room(stages: Stages, room: ArchitectureStage) -> Stages:
 
 def published_stages(inputs: Inputs, library: ShapeLibrary, store: ModelStore | None = None) -> Stages:
     """Networks for perception, retrieval and poses by correspondences, PlainRecon, the four stages of layout.
-
-    Args:
-        inputs: what the user gave.
-        library: where shapes come from.
-        store: where networks lie; this machine's by default.
 
     Raises:
         UnavailableError: a network that this needs is not on this machine.

@@ -64,10 +64,7 @@ class _Similarity:
     def from_cameras(cls, measured: Camera, scene: Camera, floor_m: float) -> _Similarity:
         """Both cameras are the photo's; their heights above the floor say how lengths compare.
 
-        Args:
-            measured: with the floor at 0.
-            scene: of the scene.
-            floor_m: height of its floor.
+        In the measurement the floor is at 0.
         """
         if np.array_equal(measured.T_world_camera, scene.T_world_camera):
             return cls(np.eye(3), np.zeros(3), 1.0)

@@ -104,12 +104,7 @@ class Runner:
 
 
 def stage_code(stage: object, sources: Sources | None = None) -> str:
-    """A hash of the source that a stage runs: its class's module, those of what it holds, and all that they import.
-
-    Args:
-        stage: its fields are followed, and those of dataclasses within.
-        sources: where modules are read; those of the running package by default.
-    """
+    """A hash of the source that a stage runs: its class's module, those of what it holds, and all that they import."""
     return (sources or package_sources()).key((type(stage).__module__, *_modules_held(stage)))
 
 

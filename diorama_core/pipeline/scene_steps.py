@@ -10,7 +10,6 @@ from jaxtyping import UInt8
 
 from diorama_core.appearance.photo_appearance import PhotoAppearance, photo_appearance
 from diorama_core.architecture.room_extent import containing_room, without_floor_behind_walls
-from diorama_core.architecture.texture.plane_textures import plane_textures
 from diorama_core.architecture.texture.refit import refit_textures
 from diorama_core.arrangement.explain import SCALE, reasons_of_change
 from diorama_core.arrangement.support_hypotheses import (
@@ -36,11 +35,9 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import UNKNOWN
 from diorama_core.perception.foundation.depth_prediction import with_depth
 from diorama_core.perception.illuminant import Illuminant
-from diorama_core.pipeline.colours import photo_colours, room_illuminant, share_set_colours
+from diorama_core.pipeline.colours import photo_colours, share_set_colours
 from diorama_core.pipeline.steps import Corrected, LaidOut
 from diorama_core.processes import call_beside
-from diorama_core.progress import Progress
-from diorama_core.protocols import EmptyRoomFiller, LayoutStage, Preview, RefinementStage
 from diorama_core.scene.edits import set_metrics
 from diorama_core.scene.room_edits import floor_height, rescale_to_length
 from diorama_core.scene.types import Scene
@@ -54,20 +51,6 @@ class FinishedScene:
 
     scene: Scene
     textures: Pictures
-
-
-def illuminant(
-    inputs: Inputs, objects: tuple[DetectedObject, ...], room: ArchitectureEstimate, geometry: ObjectGeometry
-) -> Illuminant:
-    """The photo's light, by the planes of the room.
-
-    Args:
-        inputs: as given.
-        objects: what was found in the photo, with masks.
-        room: its planes.
-        geometry: the objects' cuboids, the camera, and what supports what.
-    """
-    return room_illuminant(inputs, objects, room.architecture, geometry.camera)
 
 
 def white_balance_inputs(inputs: Inputs, light: Illuminant) -> Inputs:
@@ -162,59 +145,6 @@ def appearance(
         light: that the photo was freed of.
     """
     return call_beside(photo_appearance, balanced.photo.rgb, objects, scene, library, light.rgb)
-
-
-def plane_pictures(
-    balanced: Inputs,
-    objects: tuple[DetectedObject, ...],
-    geometry: ObjectGeometry,
-    scene: Scene,
-    filler: EmptyRoomFiller | None,
-    standing: frozenset[str],
-) -> Pictures:
-    """The pictures of floor, walls and ceiling that are seen well enough, by plane id.
-
-    Args:
-        balanced: the photo in white light.
-        objects: what hides the room.
-        geometry: has the photo's camera.
-        scene: before its layout.
-        filler: paints what stands in the room out of the photo, where there is one.
-        standing: ids of the objects on the floor.
-    """
-    return plane_textures(balanced, objects, geometry.camera, scene.architecture, filler, standing)
-
-
-def optimise_layout(stage: LayoutStage, observed: LaidOut, preview: Preview | None, progress: Progress) -> LaidOut:
-    """The scene after the layout optimiser.
-
-    Args:
-        stage: the recipe.
-        observed: the scene before it.
-        preview: called with the layout as it becomes.
-        progress: reports and cancellation.
-    """
-    return LaidOut(*stage.optimise(observed.scene, progress, preview))
-
-
-def refine_layout(
-    stage: RefinementStage,
-    arranged: LaidOut,
-    observed: Scene,
-    objects: Sequence[DetectedObject],
-    progress: Progress,
-) -> LaidOut:
-    """The layout fitted to the photo's masks.
-
-    Args:
-        stage: the refinement.
-        arranged: after the layout.
-        observed: the scene before it.
-        objects: what was found in the photo, with masks.
-        progress: reports and cancellation.
-    """
-    assert arranged.report is not None
-    return LaidOut(*stage.refine(arranged.scene, arranged.report, observed, objects, progress))
 
 
 def apply_appearance(scene: Scene, look: PhotoAppearance, of_planes: Pictures) -> Scene:

@@ -11,14 +11,13 @@ from diorama_core.arrangement.explain import reasons_of_change
 from diorama_core.artefacts import Inputs, LayoutReport, Reason
 from diorama_core.errors import UnavailableError
 from diorama_core.pipeline.runner import Runner
-from diorama_core.pipeline.stages import ProposalStages, Stages
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Scene
 
 log = logging.getLogger(__name__)
 
 Artefacts = Mapping[str, Any]
-"""Artefacts by the names that the plan uses."""
+"""Artefacts by the names that the plan uses, with `stages`: the implementations (`Stages` or `ProposalStages`)."""
 
 
 @dataclass(frozen=True)
@@ -38,16 +37,9 @@ class StageStep:
     """Whether the others go on without its result when it is not available."""
     beside: bool = False
 
-    def evaluate(self, stages: Stages | ProposalStages, known: Artefacts, runner: Runner, progress: Progress) -> Any:
-        """The stage's result for the artefacts that are known.
-
-        Args:
-            stages: the implementations.
-            known: artefacts by name.
-            runner: caches results.
-            progress: reports and cancellation.
-        """
-        stage = getattr(stages, self.name)
+    def evaluate(self, known: Artefacts, runner: Runner, progress: Progress) -> Any:
+        """The stage's result for the artefacts that are known."""
+        stage = getattr(known["stages"], self.name)
         if stage is None or not self.needed(known["given"]):
             return None
         artefacts = tuple(known[name] for name in self.takes)
@@ -71,15 +63,8 @@ class Derivation:
     share: float = 0.0
     beside: bool = False
 
-    def evaluate(self, stages: Stages | ProposalStages, known: Artefacts, runner: Runner, progress: Progress) -> Any:
-        """The function's value for the artefacts that are known.
-
-        Args:
-            stages: the implementations.
-            known: artefacts by name.
-            runner: caches results.
-            progress: reports and cancellation.
-        """
+    def evaluate(self, known: Artefacts, runner: Runner, progress: Progress) -> Any:
+        """The function's value for the artefacts that are known."""
         return self.function(*(known[name] for name in self.takes))
 
 
@@ -99,7 +84,7 @@ class LayoutStep:
 
     name: str
     """Field of `Stages` and name in progress reports."""
-    function: Callable[..., LaidOut]
+    function: Callable[..., tuple[Scene, LayoutReport]]
     """Takes the stage, the artefacts and the progress."""
     takes: tuple[str, ...]
     """The first is the scene so far, a `LaidOut`."""
@@ -107,24 +92,15 @@ class LayoutStep:
     share: float
     beside: bool = False
 
-    def evaluate(
-        self, stages: Stages | ProposalStages, known: Artefacts, runner: Runner, progress: Progress
-    ) -> LaidOut:
-        """The scene after this part of the layout.
-
-        Args:
-            stages: the implementations.
-            known: artefacts by name.
-            runner: caches results.
-            progress: reports and cancellation.
-        """
-        stage, artefacts = getattr(stages, self.name), tuple(known[name] for name in self.takes)
+    def evaluate(self, known: Artefacts, runner: Runner, progress: Progress) -> LaidOut:
+        """The scene after this part of the layout."""
+        stage, artefacts = getattr(known["stages"], self.name), tuple(known[name] for name in self.takes)
         before: LaidOut = artefacts[0]
         if stage is None or not before.scene.objects:
             return before
 
         def call(*given: Any) -> LaidOut:
-            return self.function(stage, *given)
+            return LaidOut(*self.function(stage, *given))
 
         return runner.run(self.name, stage, call, artefacts, progress, saved=False)
 
@@ -156,17 +132,8 @@ class Correction:
     share: float = 0.0
     beside: bool = False
 
-    def evaluate(
-        self, stages: Stages | ProposalStages, known: Artefacts, runner: Runner, progress: Progress
-    ) -> Corrected:
-        """The scene with what the rule corrects.
-
-        Args:
-            stages: the implementations.
-            known: artefacts by name.
-            runner: caches results.
-            progress: reports and cancellation.
-        """
+    def evaluate(self, known: Artefacts, runner: Runner, progress: Progress) -> Corrected:
+        """The scene with what the rule corrects."""
         before, library, noise, *rest = (known[name] for name in self.takes)
         if self.measured not in (None, noise.measured):
             return before

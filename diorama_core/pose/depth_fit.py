@@ -100,13 +100,7 @@ class SeenOutline:
     def of(
         cls, seen: Observed, mask: Bool[np.ndarray, "h w"], settings: PoseSearchSettings = SETTINGS.search
     ) -> SeenOutline | None:
-        """The outline of a mask; None when it is empty.
-
-        Args:
-            seen: the object's box and cells.
-            mask: of the whole picture.
-            settings: number of directions.
-        """
+        """The outline of a mask; None when it is empty."""
         rows, columns = np.nonzero(mask)
         if len(rows) == 0:
             return None

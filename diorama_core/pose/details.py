@@ -2,13 +2,11 @@
 that tell shapes apart whose outlines agree about equally well.
 
 The edges of the photo within the object's mask are compared with those of a posed shape: where its surface turns or
-steps back. Both are taken as strengths of horizontal and vertical gradients, slightly blurred, and correlated, so that
-neither the strength of the light nor the colours of materials count.
+steps back. Both are taken as strengths of horizontal and vertical gradients, slightly blurred, and correlated.
 
-Two things are read, both deaf to how bright the light is and to which colours a shape happens to have: the inner edges,
-where drawers, cushions and legs meet, and how well the parts of a shape divide the picture into areas of one colour
-each. Their weights were learned together with rank and outline by ranking the candidates of rendered rooms, one room
-held out at a time.
+Beside the inner edges it is read how well the parts of a shape divide the picture into areas of one colour each: both
+are deaf to how bright the light is and to which colours a shape happens to have. Their weights were learned together
+with rank and outline by ranking the candidates of rendered rooms, one room held out at a time.
 """
 
 from __future__ import annotations
@@ -40,13 +38,7 @@ class InnerEdges:
     def of(
         cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed, settings: PoseEvidenceSettings = SETTINGS.evidence
     ) -> InnerEdges:
-        """The edges of an object in the photo.
-
-        Args:
-            rgb: the photo, sRGB, eight bits.
-            seen: the object's cells, and its mask's share in each.
-            settings: of the evidence.
-        """
+        """The edges of an object in the photo."""
         cells = seen.window.cells
         grey = seen.window.means(rgb) @ np.array([0.299, 0.587, 0.114])
         whole = (seen.covered * seen.weight > settings.whole_cell).reshape(cells, cells).astype(np.uint8)
@@ -122,13 +114,7 @@ class Details:
     def of(
         cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed, settings: PoseEvidenceSettings = SETTINGS.evidence
     ) -> Details:
-        """What the photo shows of an object.
-
-        Args:
-            rgb: the photo, sRGB, eight bits.
-            seen: the object's cells, and its mask's share in each.
-            settings: of the evidence.
-        """
+        """What the photo shows of an object."""
         return cls(
             InnerEdges.of(rgb, seen, settings),
             seen.covered * seen.weight,
@@ -137,12 +123,7 @@ class Details:
         )
 
     def log_likelihood(self, appearance: ShapeAppearance, hits: ShapeHits) -> float:
-        """How well one posed shape agrees, up to a constant of the object: higher is better.
-
-        Args:
-            appearance: The shape.
-            hits: What the rays of the object's window meet of it, in one pose.
-        """
+        """How well one posed shape agrees, up to a constant of the object: higher is better."""
         edges = float(self.edges.agreement(hits)[0])
         return self.settings.of_edges * edges + self.settings.of_parts * self.share_between_parts(appearance, hits)
 

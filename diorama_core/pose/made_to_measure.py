@@ -3,11 +3,8 @@
 Retrieval gives the nearest design of the library. Here its parameters (`library.furniture.measures`: heights of bases
 and seats, forms of backs and legs, numbers of drawers, doors, boards, cushions and panes) are changed one after the
 other, and a change is kept where outline, measured depth and inner edges agree clearly better with it. Objects that
-share shape and size are fitted together and stay alike. Where the nearest design does not fit well at its best, others
-are fitted as well and the best of them is taken (`fitted_choice`); bodies of revolution get the profile that their
-outline shows (`turned_profile`).
-
-Which of an object's candidates comes first, once they were fitted to the picture as well as they can be.
+share shape and size are fitted together and stay alike; bodies of revolution get the profile that their outline shows
+(`turned_profile`).
 
 Shapes are ranked in the poses in which they were compared as wholes. A design whose profile or size is another is a bad
 match there and the right one afterwards: what round things look like is known only when their profile was measured. So
@@ -123,11 +120,12 @@ class MadeToMeasure:
         best, alone = members[0].candidates[0], len(members) == 1
         parameters = ParameterFit(self.library, list(clear.values()), resize=alone, settings=self.settings)
         fit = parameters.fit(best, [one.pose for one in clear.values()]) if clear else None
-        starts = dict(zip(clear, fit.poses, strict=True)) if fit else {}
+        changes, poses = fit or (None, ())
+        starts = dict(zip(clear, poses, strict=True)) if fit else {}
         placed = {
             m.object_id: self._fit_candidate(
                 m.candidates[0],
-                None if fit is None else fit.changes,
+                changes,
                 shown.get(m.object_id),
                 starts.get(m.object_id, m.candidates[0].pose),
                 resize=alone,
@@ -168,12 +166,8 @@ class MadeToMeasure:
     ) -> Candidate:
         """The candidate with these parameters, its pose fitted; shapes that are nearly as retrieved stay of its id.
 
-        Args:
-            best: The retrieved shape, where it stood before any fit.
-            changes: Its parameters that differ; None where it is not built but stretched.
-            seen: The object; None where too little of it is seen.
-            start: Where the fit begins; its scale is the retrieved shape's.
-            resize: Whether its size may change.
+        Without changes (None) it is not built but stretched; the fit begins at `start`, whose scale is the retrieved
+        shape's.
         """
         shape_id, size_m, pose = best.shape_id, np.asarray(best.shape_size_m), start
         size, before = size_m, best.pose.scale
@@ -241,12 +235,7 @@ class FittedChoice:
     settings: PoseSettings = SETTINGS
 
     def best_first(self, one: PosedCandidates, seen: SeenObject) -> PosedCandidates:
-        """The candidates with the best first, all of them as they were.
-
-        Args:
-            one: Candidates, best first so far; at least one.
-            seen: The object.
-        """
+        """The candidates with the best first, all of them as they were."""
         outlined = seen.is_surely_outlined
         first, first_score = self._score_fit(one.candidates[0], seen)
         if first < self.settings.shapes.good_fit:

@@ -41,17 +41,11 @@ class Evidence:
         """0 (agrees entirely) to 1: weighted disagreement of silhouette, box, depth and normals."""
         if self.surface is None:  # how far away it is would not count
             return self._outline_errors(caster, poses, self.seen.silhouettes(caster, poses))
-        return self.errors_of(caster, self.hits(caster, poses))
+        return self.errors_of(caster, self.seen.hits(caster, poses))
 
     def error(self, caster: ShapeCaster, pose: Pose) -> float:
         """As `errors`, of one pose."""
-        return float(
-            self.errors(caster, PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None]))[0]
-        )
-
-    def hits(self, caster: ShapeCaster, poses: PoseBatch) -> ShapeHits:
-        """What the rays of the object's window meet of a shape under every pose."""
-        return self.seen.hits(caster, poses)
+        return float(self.errors(caster, PoseBatch.single(pose))[0])
 
     def errors_of(self, caster: ShapeCaster, hits: ShapeHits) -> Float[np.ndarray, "p"]:
         """As `errors`, of a shape that the rays have met."""
@@ -159,11 +153,6 @@ class Evidence:
         Shapes are made in metres: the very one fits without being enlarged or stretched much. Where the library has
         none of that size, how much exactly one that is like it was changed says little: the tails are those of a Cauchy
         distribution.
-
-        Args:
-            error: share of the silhouette that disagrees with the mask.
-            scale: of the shape, an axis each.
-            limits: of the shape's scale.
         """
         logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
         deviations = np.array(

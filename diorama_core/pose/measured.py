@@ -97,11 +97,6 @@ class MeasuredObject:
         """What speaks against poses away from the measured box, the more the worse they agree with the picture.
 
         A shape that fits badly wherever it is put does not tell where its thing is; then the box does.
-
-        Args:
-            poses: of the shape.
-            limits: its size.
-            errors: 0 to 1 (`Evidence.errors`).
         """
         iou = _upright_iou(poses, limits.shape_size_m, self.cuboid, self.settings)
         return self.settings.elsewhere * self.cuboid.confidence * errors**2 * (1.0 - iou)
@@ -128,10 +123,7 @@ class MeasuredObject:
     def turn_by_quarters(self, best: PoseBatch, symmetry: SymmetryFold, limits: SizeLimits) -> PoseBatch:
         """A pose turned by quarters in its place, each turn that the symmetry tells apart, at an even scale.
 
-        Args:
-            best: one pose.
-            symmetry: number of turns about the up axis that leave the shape as it is.
-            limits: which axes keep their scale, because the shape is thin along them.
+        Axes along which the shape is thin keep their scale.
         """
         turns = np.arange(1, max(4 // symmetry, 1)) * np.pi / 2
         R = np.array([best.R[0] @ yaw_rotation(angle) for angle in turns]).reshape(-1, 3, 3)
@@ -212,12 +204,7 @@ class WallBounds:
     def of(
         cls, walls: WallSamples, points: SeenPoints, settings: PoseEvidenceSettings = SETTINGS.evidence
     ) -> WallBounds:
-        """The walls near an object that none of its measured points is behind.
-
-        Args:
-            walls: upright surfaces that belong to no object.
-            points: of the object.
-        """
+        """The walls near an object that none of its measured points is behind."""
         xy = points.points_world[:, :2]
         middle, reach = xy.mean(axis=0), np.ptp(xy, axis=0).max() + 2.0
         near = np.flatnonzero(np.linalg.norm(walls.points_xy - middle, axis=1) < reach)

@@ -11,6 +11,7 @@ photo's border does not show where the thing ends.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,25 +45,8 @@ FINE = FitRange(steps=(0.015, 0.0075), rounds=3, gain=0.003, noise_floor=0.01)
 """A fit in two parts, the second with outlines of a finer resolution."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Moves:
-    """Poses around one, all of them neighbours by one step."""
-
-    R: list[Float[np.ndarray, "3 3"]]
-    position: list[Float[np.ndarray, "3"]]
-    scale: list[Float[np.ndarray, "3"]]
-
-    def add(self, R: Float[np.ndarray, "3 3"], position: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]) -> None:
-        """Append one pose.
-
-        Args:
-            R: rotation from the object frame to the world.
-            position: of the centre, in the world (m).
-            scale: along the object's axes.
-        """
-        self.R.append(R)
-        self.position.append(position)
-        self.scale.append(scale)
+_Move = tuple[Float[np.ndarray, "3 3"], Float[np.ndarray, "3"], Float[np.ndarray, "3"]]
+"""Rotation, place and scale of a pose near another one."""
 
 
 def fit_pose(
@@ -93,26 +77,26 @@ def fit_pose(
         for _ in range(near.rounds):
             moves = _neighbours(pose, np.asarray(shape_size_m), step, _resizings(resize, caster.round_from_above))
             if cost is None:  # compared along with its first neighbours: one comparison takes long by itself
-                moves.add(pose.R_world_object, pose.position, pose.scale)
+                moves.append((pose.R_world_object, pose.position, pose.scale))
             costs = _costs(evidence, caster, moves, start, near.noise_floor, settings)
             cost = float(costs[-1]) if cost is None else cost
             best = int(np.argmin(costs))
             if costs[best] >= cost - near.gain:
                 break
-            cost, pose = float(costs[best]), Pose(moves.R[best], moves.position[best], moves.scale[best])
+            cost, pose = float(costs[best]), Pose(*moves[best])
     return pose
 
 
 def _costs(
     evidence: Evidence,
     caster: ShapeCaster,
-    moves: _Moves,
+    moves: Sequence[_Move],
     start: Float[np.ndarray, "3"],
     noise_floor: float,
     settings: ShapeFitSettings,
 ) -> Float[np.ndarray, "p"]:
     """Disagreement with the picture and distance from the size at the start, as logarithms."""
-    poses = _batch(moves)
+    poses = PoseBatch(*(np.array(part) for part in zip(*moves, strict=True)))
     agreement = np.log(evidence.errors(caster, poses) + noise_floor)
     return agreement + resizing_cost(evidence.seen, poses.scale / start, settings)
 
@@ -138,20 +122,16 @@ def _resizings(resize: bool, round: bool) -> tuple[tuple[tuple[int, ...], int], 
 
 def _neighbours(
     pose: Pose, shape_size_m: Float[np.ndarray, "3"], step: float, resizings: tuple[tuple[tuple[int, ...], int], ...]
-) -> _Moves:
-    R, moves = pose.R_world_object, _Moves([], [], [])
+) -> list[_Move]:
+    R, moves = pose.R_world_object, list[_Move]()
     reach = 0.5 * step * float((shape_size_m * pose.scale).max())
     for sign in (1.0, -1.0):
-        moves.add(R @ yaw_rotation(sign * step), pose.position, pose.scale)
+        moves.append((R @ yaw_rotation(sign * step), pose.position, pose.scale))
         for axis in range(2):
-            moves.add(R, pose.position + sign * reach * R[:, axis], pose.scale)
+            moves.append((R, pose.position + sign * reach * R[:, axis], pose.scale))
         for axes, fixed in resizings:
             scale, first = pose.scale.copy(), axes[0]
             scale[list(axes)] *= 1.0 + sign * step
             grown = 0.5 * (scale[first] - pose.scale[first]) * shape_size_m[first]
-            moves.add(R, pose.position - fixed * grown * R[:, first], scale)
+            moves.append((R, pose.position - fixed * grown * R[:, first], scale))
     return moves
-
-
-def _batch(moves: _Moves) -> PoseBatch:
-    return PoseBatch(np.array(moves.R), np.array(moves.position), np.array(moves.scale))

@@ -28,15 +28,6 @@ from diorama_core.scene.types import Candidate, Pose
 
 
 @dataclass(frozen=True, eq=False)
-class FittedParameters:
-    """What differs from a retrieved design in the picture."""
-
-    changes: dict[str, Value]
-    poses: tuple[Pose, ...]
-    """Poses of the objects that it was compared with; scales are those of the retrieved shape."""
-
-
-@dataclass(frozen=True, eq=False)
 class _Fit:
     """One variant of a design, as it agrees with the objects that have it."""
 
@@ -66,10 +57,7 @@ class _Variant:
     def score(self, seen: SeenObject, pose: Pose, start: Float[np.ndarray, "3"]) -> float:
         """How well it agrees with one object, whatever lies on that: a logarithm, higher is better.
 
-        Args:
-            seen: The object.
-            pose: Where it stands.
-            start: Its scale from before any fit.
+        What its size costs is counted from `start`, its scale before any fit.
         """
         cost = seen.outline_weight * float(
             resizing_cost(seen.evidence.seen, (pose.scale / start)[None], self.settings.shapes)[0]
@@ -91,12 +79,10 @@ class ParameterFit:
     """Whether sizes may change; those of a set stay alike."""
     settings: PoseSettings = SETTINGS
 
-    def fit(self, best: Candidate, poses: Sequence[Pose]) -> FittedParameters | None:
-        """The parameters that agree best; None where the retrieved shape is rather stretched than built.
+    def fit(self, best: Candidate, poses: Sequence[Pose]) -> tuple[dict[str, Value], tuple[Pose, ...]] | None:
+        """The changed parameters that agree best, and where they do, with scales of the retrieved shape.
 
-        Args:
-            best: The retrieved shape.
-            poses: Where it stands for every object.
+        None where that is rather stretched than built.
         """
         size_m = np.asarray(best.shape_size_m)
         if not self._may_be_built(best.shape_id):
@@ -110,8 +96,7 @@ class ParameterFit:
         changes, fit = self._search(best.shape_id, size, poses, best.pose.scale * size_m / size, as_is.score)
         if fit.score < as_is.score - self.settings.shapes.size_loss:
             return None
-        at = tuple(Pose(p.R_world_object, p.position, p.scale * size / size_m) for p in fit.poses)
-        return FittedParameters(changes, at)
+        return changes, tuple(Pose(p.R_world_object, p.position, p.scale * size / size_m) for p in fit.poses)
 
     def _search(
         self,

@@ -12,17 +12,15 @@ import numpy as np
 from diorama_core.arrangement.facing.evidence import HeadingCosts, WallSamples
 from diorama_core.arrangement.facing.solve import Facings
 from diorama_core.artefacts import Cuboid, DepthMap, DetectedObject, Inputs, ObjectGeometry, PosedCandidates
-from diorama_core.geometry.observed import observe_among
-from diorama_core.geometry.see_through import SeeThrough
 from diorama_core.library.labels import is_named
 from diorama_core.library.record import Shape
-from diorama_core.library.taxonomy import NEVER_OPEN, SETS, category
+from diorama_core.library.taxonomy import SETS, category
 from diorama_core.pose.details import Details
 from diorama_core.pose.hypotheses import Anchor, anchor_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.measured import MeasuredObject, foot_height_m
+from diorama_core.pose.seen_objects import Surroundings
 from diorama_core.pose.settings import SETTINGS, PoseSearchSettings, PoseSettings
-from diorama_core.pose.surface import measure_surface, noise_of
 from diorama_core.scene.types import Candidate, Pose
 from diorama_core.workers import map_threads
 
@@ -96,75 +94,24 @@ def posing_tasks(
         cells: resolutions at which all hypotheses, and the best ones, are compared.
         walls: where walls are seen.
     """
-    cuboid_of = {c.object_id: c for c in geometry.cuboids}
-    items = [o for o in objects if o.id in cuboid_of]
-    scene = _Surroundings(
-        inputs,
-        geometry,
-        depth,
-        items,
-        [cuboid_of[o.id] for o in items],
-        walls,
-        noise_of(depth, settings.evidence),
-        settings,
-    )
-    posed = [i for i, item in enumerate(items) if item.id in kinds]
-    return map_threads(lambda i: scene.task(i, kinds[items[i].id], cells), posed)
+    scene = Surroundings(inputs, objects, geometry, depth, settings.evidence)
+    posed = [i for i, item in enumerate(scene.items) if item.id in kinds]
+    return map_threads(lambda i: _task(scene, i, kinds[scene.items[i].id], cells, walls, settings), posed)
 
 
-@dataclass(frozen=True, eq=False)
-class _Surroundings:
-    """All objects where they are, and what is seen around them."""
-
-    inputs: Inputs
-    geometry: ObjectGeometry
-    depth: DepthMap
-    items: Sequence[DetectedObject]
-    cuboids: Sequence[Cuboid]
-    walls: WallSamples
-    noise: float
-    """Noise of measured depth (`surface.noise_of`)."""
-    settings: PoseSettings
-
-    @property
-    def parents(self) -> list[int | None]:
-        """For every object the one that carries it."""
-        positions = {o.id: i for i, o in enumerate(self.items)}
-        parent_of = {s.child: s.parent for s in self.geometry.supports}
-        return [positions.get(parent_of.get(o.id, "")) for o in self.items]
-
-    def task(self, i: int, kind: str, cells: tuple[int, int]) -> PosingTask:
-        """One object's, as a kind.
-
-        Args:
-            i: index of the object.
-            kind: category it is taken for.
-            cells: along each side of the coarse and of the fine window.
-        """
-        item, cuboid, camera, depth = self.items[i], self.cuboids[i], self.geometry.camera, self.depth
-        held_by = next((s.parent for s in self.geometry.supports if s.child == item.id), None)
-        on_wall = held_by == "wall" and category(kind).mount != "floor"
-        anchor = anchor_of(cuboid, on_wall, camera.position[:2] - cuboid.centre[:2])
-        centres = np.array([c.centre for c in self.cuboids]).reshape(-1, 3)
-        parents = self.parents
-        windows = [observe_among(camera, self.items, centres, parents, i, count) for count in cells]
-        surfaces = [measure_surface(depth, seen, item.mask, self.noise, self.settings.evidence) for seen in windows]
-        rgb, closed = self.inputs.photo.rgb, item.category in NEVER_OPEN
-        coarse, fine = (
-            Evidence(
-                camera,
-                w,
-                s,
-                None if closed or s is not None else SeeThrough.of(rgb, w, self.settings.evidence.see_through),
-                settings=self.settings.evidence,
-            )
-            for w, s in zip(windows, surfaces, strict=True)
-        )
-        foot_m = foot_height_m(depth, item.mask, camera, self.settings.search) if held_by == "floor" else None
-        measured = MeasuredObject.of(item.mask, fine, cuboid, anchor, self.walls, foot_m, self.settings)
-        details = None if measured is None else Details.of(rgb, windows[1], self.settings.evidence)
-        carried = tuple(self.cuboids[j] for j, parent in enumerate(parents) if parent == i)
-        return PosingTask(item, cuboid, anchor, carried, coarse, fine, measured, details, self.settings.search)
+def _task(
+    scene: Surroundings, i: int, kind: str, cells: tuple[int, int], walls: WallSamples, settings: PoseSettings
+) -> PosingTask:
+    """One object's, as a kind."""
+    item, cuboid, camera = scene.items[i], scene.cuboids[i], scene.geometry.camera
+    held_by = next((s.parent for s in scene.geometry.supports if s.child == item.id), None)
+    on_wall = held_by == "wall" and category(kind).mount != "floor"
+    anchor = anchor_of(cuboid, on_wall, camera.position[:2] - cuboid.centre[:2])
+    coarse, fine = (scene.evidence(i, count) for count in cells)
+    foot_m = foot_height_m(scene.depth, item.mask, camera, settings.search) if held_by == "floor" else None
+    measured = MeasuredObject.of(item.mask, fine, cuboid, anchor, walls, foot_m, settings)
+    details = None if measured is None else Details.of(scene.inputs.photo.rgb, fine.seen, settings.evidence)
+    return PosingTask(item, cuboid, anchor, scene.loads(i), coarse, fine, measured, details, settings.search)
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ small in the picture. Position along the supporting face, size and yaw are corre
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -38,25 +39,23 @@ class BoxFit:
 
     def refine(self, caster: ShapeCaster, start: PoseBatch) -> PoseBatch:
         """The poses corrected toward the box; unchanged where no correction helps."""
-        tangents = self._tangents()
-        sides = _find_hidden_sides(self.seen)
         x = np.zeros((len(start), _PARAMETERS))
-        sigma = self._sigma(start)
-        cost, residual = self._residuals(caster, start, x, sigma, tangents, sides)
+        cost, residual = self._residuals(caster, start, x)
         damping = np.full(len(start), 0.05)
-        jacobian = self._jacobian(caster, start, x, residual, sigma, tangents, sides)
+        jacobian = self._jacobian(caster, start, x, residual)
         better = np.zeros(len(start), dtype=bool)
         for _ in range(self.iterations):
             if better.any():
-                jacobian = self._jacobian(caster, start, x, residual, sigma, tangents, sides)
+                jacobian = self._jacobian(caster, start, x, residual)
             step = _damped_step(jacobian, residual, damping)
             trial = np.clip(x + step, -3.0, 3.0)
-            trial_cost, trial_residual = self._residuals(caster, start, trial, sigma, tangents, sides)
+            trial_cost, trial_residual = self._residuals(caster, start, trial)
             better = trial_cost < cost
             x[better], cost[better], residual[better] = trial[better], trial_cost[better], trial_residual[better]
             damping = np.where(better, damping * 0.3, damping * 8.0)
-        return self._apply_steps(start, x, sigma, tangents)
+        return self._apply_steps(start, x)
 
+    @cached_property
     def _tangents(self) -> Float[np.ndarray, "2 3"]:
         """Along the anchored face: away from the camera, and across."""
         axis = self.anchor.axis_world
@@ -78,50 +77,47 @@ class BoxFit:
         sigma[:, 2:5], sigma[:, 5] = 0.12, self.yaw_sigma_rad
         return sigma
 
-    def _apply_steps(self, start: PoseBatch, x: np.ndarray, sigma: np.ndarray, tangents: np.ndarray) -> PoseBatch:
+    def _apply_steps(self, start: PoseBatch, x: np.ndarray) -> PoseBatch:
         """The starting poses after steps of x sigmas."""
-        change = x * sigma
+        change = x * self._sigma(start)
         R = np.einsum("pij,pjk->pik", start.R, yaw_rotations(change[:, 5]))
         scale = self.limits.scale_for(start.scale * np.exp(change[:, 2:5]) * self.limits.shape_size_m)
-        centres = start.position + change[:, :2] @ tangents
+        centres = start.position + change[:, :2] @ self._tangents
         return PoseBatch(R, self.anchor.place_centres(centres, R, scale * self.limits.shape_size_m), scale)
 
     def _residuals(
-        self,
-        caster: ShapeCaster,
-        start: PoseBatch,
-        x: np.ndarray,
-        sigma: np.ndarray,
-        tangents: np.ndarray,
-        hidden: Bool[np.ndarray, "4"],
+        self, caster: ShapeCaster, start: PoseBatch, x: np.ndarray
     ) -> tuple[Float[np.ndarray, "p"], Float[np.ndarray, "p 10"]]:
-        bounds = caster.bounds_px(self.camera, self._apply_steps(start, x, sigma, tangents))
+        bounds = caster.bounds_px(self.camera, self._apply_steps(start, x))
         box = np.asarray(self.seen.box, dtype=np.float64)
         extent = np.maximum(np.tile(box[2:] - box[:2], 2), 1.0)
         outward = (bounds - box) * np.array([-1.0, -1.0, 1.0, 1.0]) / (0.015 * extent + 1.5)
         outward = np.where(np.isnan(outward), 20.0, outward)
-        outward = np.where(hidden & (outward > 0), self.settings.hidden_side * outward, outward)
+        outward = np.where(self._sides_hidden & (outward > 0), self.settings.hidden_side * outward, outward)
         robust = np.sign(outward) * _huber_residuals(np.abs(outward), self.settings)
         residual = np.concatenate([robust, x], axis=1)
         return (residual**2).sum(axis=1), residual
 
     def _jacobian(
-        self,
-        caster: ShapeCaster,
-        start: PoseBatch,
-        x: np.ndarray,
-        residual: np.ndarray,
-        sigma: np.ndarray,
-        tangents: np.ndarray,
-        hidden: np.ndarray,
+        self, caster: ShapeCaster, start: PoseBatch, x: np.ndarray, residual: np.ndarray
     ) -> Float[np.ndarray, "p 10 6"]:
         """Forward differences; all poses and parameters in one projection."""
         count = len(start)
         repeat = np.repeat(np.arange(count), _PARAMETERS)
         shifted = x[repeat] + self.settings.slope_step * np.tile(np.eye(_PARAMETERS), (count, 1))
-        _, moved = self._residuals(caster, start[repeat], shifted, sigma[repeat], tangents, hidden)
+        _, moved = self._residuals(caster, start[repeat], shifted)
         slopes = (moved.reshape(count, _PARAMETERS, -1) - residual[:, None]) / self.settings.slope_step
         return slopes.transpose(0, 2, 1)
+
+    @cached_property
+    def _sides_hidden(self) -> Bool[np.ndarray, "4"]:
+        """Sides of the box beside which nearer objects may hide more of the object."""
+        x, y = self.seen.window.centres_px.T
+        x1, y1, x2, y2 = self.seen.box
+        dx, dy = 0.12 * (x2 - x1), 0.12 * (y2 - y1)
+        inside = (x >= x1) & (x < x2) & (y >= y1) & (y < y2)
+        strips = (x < x1 + dx, y < y1 + dy, x >= x2 - dx, y >= y2 - dy)
+        return np.array([bool((inside & s).any() and self.seen.weight[inside & s].mean() < 0.6) for s in strips])
 
 
 def _huber_residuals(magnitude: np.ndarray, settings: PoseSearchSettings) -> np.ndarray:
@@ -135,13 +131,3 @@ def _damped_step(jacobian: np.ndarray, residual: np.ndarray, damping: np.ndarray
     normal = normal + damping[:, None, None] * np.eye(_PARAMETERS) * (1.0 + np.einsum("pii->pi", normal))[:, None]
     gradient = np.einsum("pri,pr->pi", jacobian, residual)
     return -np.linalg.solve(normal, gradient[..., None])[..., 0]
-
-
-def _find_hidden_sides(seen: Observed) -> Bool[np.ndarray, "4"]:
-    """Sides of the box beside which nearer objects may hide more of the object."""
-    x, y = seen.window.centres_px.T
-    x1, y1, x2, y2 = seen.box
-    dx, dy = 0.12 * (x2 - x1), 0.12 * (y2 - y1)
-    inside = (x >= x1) & (x < x2) & (y >= y1) & (y < y2)
-    strips = (x < x1 + dx, y < y1 + dy, x >= x2 - dx, y >= y2 - dy)
-    return np.array([bool((inside & s).any() and seen.weight[inside & s].mean() < 0.6) for s in strips])

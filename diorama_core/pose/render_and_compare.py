@@ -253,13 +253,7 @@ class RenderAndCompare:
         return both, errors, scores
 
     def refine_best(self, task: PosingTask, tried: TriedShape, count: int) -> TriedShape:
-        """A tried shape with its best unlike poses refined beside the others, which are worth a little less then.
-
-        Args:
-            task: of the object.
-            tried: the shape with its poses and their scores.
-            count: of poses to refine.
-        """
+        """A tried shape with its best unlike poses refined beside the others, which are worth a little less then."""
         fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
         start = tried.hypotheses[
             unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count, self.settings.search)
@@ -295,7 +289,7 @@ class RenderAndCompare:
         log_likelihood = 0.0
         if task.details is not None:
             appearance = self._appearance(tried.shape)
-            log_likelihood = task.details.log_likelihood(appearance, task.fine.hits(appearance.caster, poses))
+            log_likelihood = task.details.log_likelihood(appearance, task.fine.seen.hits(appearance.caster, poses))
         return self.settings.search.retrieval_with_depth * tried.liked + similarity + stands + log_likelihood
 
 

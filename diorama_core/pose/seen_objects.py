@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -14,10 +15,58 @@ from diorama_core.geometry.silhouette import PoseBatch, ShapeCaster
 from diorama_core.library.taxonomy import NEVER_OPEN, SETS
 from diorama_core.pose.details import InnerEdges
 from diorama_core.pose.mask_observations import Evidence
-from diorama_core.pose.settings import SETTINGS, PoseSettings
+from diorama_core.pose.settings import SETTINGS, PoseEvidenceSettings, PoseSettings
 from diorama_core.pose.surface import measure_surface, noise_of
 from diorama_core.scene.types import Pose
 from diorama_core.workers import map_threads
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """All objects of a photo where they are, to look at one among the others."""
+
+    inputs: Inputs
+    objects: tuple[DetectedObject, ...]
+    geometry: ObjectGeometry
+    depth: DepthMap
+    settings: PoseEvidenceSettings
+
+    @cached_property
+    def cuboids(self) -> tuple[Cuboid, ...]:
+        """Those of the items."""
+        cuboid_of = {c.object_id: c for c in self.geometry.cuboids}
+        return tuple(cuboid_of[o.id] for o in self.objects if o.id in cuboid_of)
+
+    @cached_property
+    def items(self) -> tuple[DetectedObject, ...]:
+        """The objects that have a cuboid."""
+        placed = {c.object_id for c in self.cuboids}
+        return tuple(o for o in self.objects if o.id in placed)
+
+    @cached_property
+    def parents(self) -> list[int | None]:
+        """For every item the one that carries it."""
+        positions = {o.id: i for i, o in enumerate(self.items)}
+        parent_of = {s.child: s.parent for s in self.geometry.supports}
+        return [positions.get(parent_of.get(o.id, "")) for o in self.items]
+
+    @cached_property
+    def _noise(self) -> float:
+        return noise_of(self.depth, self.settings)
+
+    def loads(self, i: int) -> tuple[Cuboid, ...]:
+        """Cuboids of the items that lie on one."""
+        return tuple(cuboid for cuboid, parent in zip(self.cuboids, self.parents, strict=True) if parent == i)
+
+    def evidence(self, i: int, cells: int, *, loads_apart: bool = False) -> Evidence:
+        """Observations of an item at a resolution, what lies on it left out where asked."""
+        item, camera = self.items[i], self.geometry.camera
+        centres = np.array([c.centre for c in self.cuboids]).reshape(-1, 3)
+        seen = observe_among(camera, self.items, centres, self.parents, i, cells, loads_apart=loads_apart)
+        surface = measure_surface(self.depth, seen, item.mask, self._noise, self.settings)
+        closed = surface is not None or item.category in NEVER_OPEN
+        colours = None if closed else SeeThrough.of(self.inputs.photo.rgb, seen, self.settings.see_through)
+        return Evidence(camera, seen, surface, colours, settings=self.settings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +112,11 @@ class SeenObject:
 
     def edges_in(self, caster: ShapeCaster, pose: Pose) -> float:
         """How well the inner edges of a shape agree with the photo's: -1 to 1."""
-        poses = PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None])
-        return float(self.edges.agreement(self.evidence.hits(caster, poses))[0])
+        return float(self.edges.agreement(self.evidence.seen.hits(caster, PoseBatch.single(pose)))[0])
 
     def score(self, caster: ShapeCaster, pose: Pose) -> float:
         """How well a shape agrees in a pose: logarithm, higher is better."""
-        hits = self.evidence.hits(caster, PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None]))
+        hits = self.evidence.seen.hits(caster, PoseBatch.single(pose))
         error = float(self.evidence.errors_of(caster, hits)[0])
         edges = float(self.edges.agreement(hits)[0])
         trust = self.evidence.seen.mask_trust
@@ -94,38 +142,25 @@ def observe_objects(
         settings: of the pose stage.
     """
     pose_of = {p.object_id: p.candidates[0].pose for p in posed if p.candidates}
-    cuboid_of = {c.object_id: c for c in geometry.cuboids}
-    items = [o for o in objects if o.id in cuboid_of]
-    centres = np.array([cuboid_of[o.id].centre for o in items]).reshape(-1, 3)
-    positions = {o.id: k for k, o in enumerate(items)}
-    parent_of = {s.child: s.parent for s in geometry.supports}
-    parents = [positions.get(parent_of.get(o.id, "")) for o in items]
-    noise = noise_of(depth, settings.evidence)
-
-    def evidence(k: int, cells: int) -> Evidence:
-        item = items[k]
-        window = observe_among(geometry.camera, items, centres, parents, k, cells, loads_apart=True)
-        surface = measure_surface(depth, window, item.mask, noise, settings.evidence)
-        closed = surface is not None or item.category in NEVER_OPEN
-        colours = None if closed else SeeThrough.of(inputs.photo.rgb, window, settings.evidence.see_through)
-        return Evidence(geometry.camera, window, surface, colours, settings=settings.evidence)
+    scene = Surroundings(inputs, objects, geometry, depth, settings.evidence)
 
     def observe(k: int) -> SeenObject | None:
-        item, coarse = items[k], evidence(k, settings.shapes.cells)
-        window = coarse.seen
+        item, coarse = scene.items[k], scene.evidence(k, settings.shapes.cells, loads_apart=True)
+        window, given = coarse.seen, item.mask_confidence >= settings.shapes.given_mask
         if float((window.covered * window.weight).sum()) < settings.shapes.min_cells:
             return None
         return SeenObject(
             coarse,
-            evidence(k, settings.shapes.fine_cells) if item.mask_confidence >= settings.shapes.given_mask else coarse,
+            scene.evidence(k, settings.shapes.fine_cells, loads_apart=True) if given else coarse,
             InnerEdges.of(inputs.photo.rgb, window, settings.evidence),
             pose_of[item.id],
             item.pixels,
             item.mask_confidence,
             item.category,
-            tuple(cuboid_of[o.id] for o, parent in zip(items, parents, strict=True) if parent == k),
+            scene.loads(k),
             settings,
         )
 
-    shown = [k for k, item in enumerate(items) if item.id in pose_of]
-    return {items[k].id: one for k, one in zip(shown, map_threads(observe, shown), strict=True) if one is not None}
+    shown = [k for k, item in enumerate(scene.items) if item.id in pose_of]
+    found = zip(shown, map_threads(observe, shown), strict=True)
+    return {scene.items[k].id: one for k, one in found if one is not None}

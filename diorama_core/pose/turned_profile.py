@@ -15,7 +15,6 @@ import numpy as np
 import trimesh
 from jaxtyping import Bool, Float
 
-from diorama_core.geometry.observed import Observed
 from diorama_core.geometry.projection import NEAR_M
 from diorama_core.geometry.silhouette import ShapeCaster
 from diorama_core.library.furniture.measures import can_be_made, can_be_turned, made_id
@@ -24,7 +23,7 @@ from diorama_core.library.record import BUILT_IN, ShapeLibrary, record_of
 from diorama_core.pose.mask_observations import Evidence
 from diorama_core.pose.outline_fit import fit_pose, resizing_cost
 from diorama_core.pose.settings import SETTINGS, PoseSettings, ShapeFitSettings
-from diorama_core.scene.types import Camera, Pose
+from diorama_core.scene.types import Pose
 
 RADII = np.linspace(0.02, 1.6, 80)
 """Tried, as shares of the body's largest so far."""
@@ -66,34 +65,28 @@ def _reach(points_xy: Float[np.ndarray, "p 2"]) -> float:
     return float(np.hypot(*points_xy.T).max()) if len(points_xy) else 0.0
 
 
-@dataclass(frozen=True, eq=False)
-class OutlineMap:
-    """Where an object is seen in its window, between the cells' centres too."""
-
-    camera: Camera
-    seen: Observed
-    settings: ShapeFitSettings
-
-    def sample(self, points_world: Float[np.ndarray, "*n 3"]) -> tuple[Bool[np.ndarray, "*n"], Bool[np.ndarray, "*n"]]:
-        """Look up which points lie within the outline, and of which that is known at all."""
-        flat = points_world.reshape(-1, 3)
-        pixels, in_front = self.camera.project(flat), self.camera.to_camera(flat)[:, 2] > NEAR_M
-        x1, y1, x2, y2 = self.seen.window.bounds_px
-        cells = self.seen.window.cells
-        place = (pixels - (x1, y1)) / ((x2 - x1) / cells, (y2 - y1) / cells) - 0.5
-        covered, known = (_bilinear(v.reshape(cells, cells), place) for v in (self.seen.covered, self.seen.weight))
-        inside = in_front & (covered >= self.settings.covered)
-        shape = points_world.shape[:-1]
-        return inside.reshape(shape), (in_front & (known >= self.settings.known) | inside).reshape(shape)
+def _look_up(
+    evidence: Evidence, points_world: Float[np.ndarray, "*n 3"], settings: ShapeFitSettings
+) -> tuple[Bool[np.ndarray, "*n"], Bool[np.ndarray, "*n"]]:
+    """Which points lie within an object's outline, and of which that is known at all, also between cells' centres."""
+    flat, seen = points_world.reshape(-1, 3), evidence.seen
+    pixels, in_front = evidence.camera.project(flat), evidence.camera.to_camera(flat)[:, 2] > NEAR_M
+    x1, y1, x2, y2 = seen.window.bounds_px
+    cells = seen.window.cells
+    place = (pixels - (x1, y1)) / ((x2 - x1) / cells, (y2 - y1) / cells) - 0.5
+    covered, known = (_bilinear(v.reshape(cells, cells), place) for v in (seen.covered, seen.weight))
+    inside = in_front & (covered >= settings.covered)
+    shape = points_world.shape[:-1]
+    return inside.reshape(shape), (in_front & (known >= settings.known) | inside).reshape(shape)
 
 
 def measure_girth(
-    outline: OutlineMap, mesh: trimesh.Trimesh, pose: Pose, settings: ShapeFitSettings
+    evidence: Evidence, mesh: trimesh.Trimesh, pose: Pose, settings: ShapeFitSettings
 ) -> tuple[int, ...] | None:
     """How much wider the body is than a shape at every knot of its height, percent; None where nothing is to be seen.
 
     Args:
-        outline: Of the object in the photo.
+        evidence: Of the object in the photo.
         mesh: The shape, a body of revolution.
         pose: Where it stands, upright, as high as the body and as wide at most as it may be.
     """
@@ -107,7 +100,7 @@ def measure_girth(
     points = np.empty((KNOTS, len(tried), len(ANGLES), 3))
     points[..., :2] = pose.position[:2] + tried[None, :, None, None] * circle
     points[..., 2] = (pose.position[2] + pose.scale[2] * heights)[:, None, None]
-    inside, known = outline.sample(points)
+    inside, known = _look_up(evidence, points, settings)
     fits = (known & ~inside).mean(axis=2) <= settings.max_outside
     widest = np.where(fits.all(axis=1), len(tried), np.argmin(fits, axis=1))
     limited = widest < len(tried)
@@ -159,10 +152,7 @@ def fit_profile(
     mesh = library.mesh(shape_id)
     if len(mesh.faces) > settings.shapes.max_faces or not is_revolution(mesh, settings.shapes):
         return None
-    profiles = [
-        measure_girth(OutlineMap(e.camera, e.seen, settings.shapes), mesh, p, settings.shapes)
-        for e, p in zip(evidence, poses, strict=True)
-    ]
+    profiles = [measure_girth(e, mesh, p, settings.shapes) for e, p in zip(evidence, poses, strict=True)]
     known_profiles = [g for g in profiles if g is not None]
     if not known_profiles:
         return None

@@ -122,13 +122,7 @@ def _standing(view: BoxView, priors: tuple[SizePrior, ...], mount: Mount) -> Flo
 
 
 def size_density(view: BoxView, prior: SizePrior, mount: Mount) -> Float[np.ndarray, "d"]:
-    """How usual the size would be that a thing in the box has, for every distance; a density over two logarithms.
-
-    Args:
-        view: of the box.
-        prior: usual size of the kind.
-        mount: how things of the kind are held.
-    """
+    """How usual the size would be that a thing in the box has, for every distance; a density over two logarithms."""
     beyond = _depth_seen(view, prior)
     tall_m = np.maximum(DISTANCES_M * (view.tan_top - view.tan_bottom) + beyond * view.tan_top, 0.01)
     wide_m = np.maximum(DISTANCES_M * view.width, 0.01)
@@ -138,13 +132,7 @@ def size_density(view: BoxView, prior: SizePrior, mount: Mount) -> Float[np.ndar
 
 
 def place_density(view: BoxView, prior: SizePrior, mount: Mount) -> Float[np.ndarray, "h d"]:
-    """How usual it is for a thing that is so mounted to be where it would be; densities over height in metres.
-
-    Args:
-        view: of the box.
-        prior: usual size of the kind.
-        mount: how things of the kind are held.
-    """
+    """How usual it is for a thing that is so mounted to be where it would be; densities over height in metres."""
     bottom = HEIGHTS_M[:, None] + DISTANCES_M * view.tan_bottom
     top = HEIGHTS_M[:, None] + (DISTANCES_M + _depth_seen(view, prior)) * view.tan_top
     sigma = foot_sigma_m()

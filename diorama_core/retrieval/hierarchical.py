@@ -80,10 +80,7 @@ class HierarchicalRetrieval:
         """Ranked shapes of every object that has a cuboid, in the order of `objects`.
 
         Args:
-            inputs: as given.
-            objects: what was found in the photo, with masks.
-            geometry: the objects' cuboids, the camera, and what supports what.
-            progress: reports and cancellation.
+            inputs, objects, geometry, progress: as documented in `protocols.RetrievalStage`.
         """
         cuboids = {c.object_id: c for c in geometry.cuboids}
         measured = [o for o in objects if o.id in cuboids]
@@ -344,14 +341,6 @@ def _best(
     """The best shapes by own and group's scores; most of them the group's, so that things of a kind can agree.
 
     Some are the best of other kinds that the word may mean, so that posing can tell and a person can choose.
-
-    Args:
-        scores: scores of one object.
-        of_group: mean scores of its group.
-        keep: how many shapes are kept.
-        kind_of: categories by shape id.
-        settings: among others how many kinds are represented, where there are so many.
-        named: whether a word says what the object is.
     """
     share, kinds = settings.own_evidence, settings.kinds if named else settings.kinds_of_unnamed
     mixed = {key: share * scores[key] + (1 - share) * of_group[key] for key in scores}

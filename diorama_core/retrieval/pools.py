@@ -35,7 +35,7 @@ def near_kinds(name: str, settings: PoolSettings = SETTINGS.pools) -> tuple[str,
 
 
 @cache
-def _alike_in_size(name: str, settings: PoolSettings = SETTINGS.pools) -> tuple[str, ...]:
+def _alike_in_size(name: str, settings: PoolSettings) -> tuple[str, ...]:
     kind = category(name)
     others = [c for c in CATEGORIES if c.mount == kind.mount and c.name not in (name, UNKNOWN.name) and not c.kin]
     unlike = [float(np.abs(c.priors[0].log_median_xyz - kind.priors[0].log_median_xyz).sum()) for c in others]
@@ -120,15 +120,13 @@ def _usable(library: ShapeLibrary, shapes: Sequence[Shape], query: RetrievalQuer
     return [s for s in shapes if s.source == "built in" or library.shape(s.id).surfaces] or shapes
 
 
-def _nearest(
-    shapes: Sequence[Shape], size_m: np.ndarray, most: int, settings: PoolSettings = SETTINGS.pools
-) -> list[Shape]:
+def _nearest(shapes: Sequence[Shape], size_m: np.ndarray, most: int, settings: PoolSettings) -> list[Shape]:
     """The shapes nearest in size, either way round, in a stable order."""
     order = np.argsort([_fit_cost(s, size_m, settings) for s in shapes], kind="stable")[:most]
     return [shapes[i] for i in sorted(order)]
 
 
-def _fit_cost(shape: Shape, size_m: np.ndarray, settings: PoolSettings = SETTINGS.pools) -> float:
+def _fit_cost(shape: Shape, size_m: np.ndarray, settings: PoolSettings) -> float:
     """How unlike in size, either way round."""
     return min(size_cost(shape.size_m, size_m, settings), size_cost(shape.size_m, size_m[[1, 0, 2]], settings))
 

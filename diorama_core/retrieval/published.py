@@ -1,13 +1,11 @@
 """Retrieval as publications have it: shapes near to the label's words, ordered by the crop, and shapes as ACDC finds
-them (Dai et al. 2024, "digital cousins"): kinds by the label, then shapes by their looks.
+them (Dai et al. 2024, "digital cousins"): kinds by the label, then shapes by their looks. No size, outline in place or
+neighbour has a say.
 
-No size, outline in place or neighbour has a say (section 3.2 and supplement). The publication does not say how many
-shapes the words leave; shapes that carry others are not told apart here.
-
-The publication compares the label with the library's categories by CLIP and the masked crop with pictures of shapes
-by DINOv2, and lets a language model choose among the nearest. Here the taxonomy names the kinds, and looks are
-compared as the stage is told: in a joint embedding where networks are at hand, else by the embedded views, which
-stand in for it. No size, outline in place or neighbour has a say.
+The paper (section 3.2 and supplement) does not say how many shapes the words leave; shapes that carry others are not
+told apart here. ACDC compares the label with the library's categories by CLIP and the masked crop with pictures of
+shapes by DINOv2, and lets a language model choose among the nearest. Here the taxonomy names the kinds, and looks are
+compared as the stage is told: in a joint embedding where networks are at hand, else by the embedded views.
 """
 
 from __future__ import annotations
@@ -47,10 +45,7 @@ class TextThenPicture:
         """At most `shapes` of every object that was placed.
 
         Args:
-            inputs: as given.
-            objects: what was found in the photo, with masks.
-            geometry: the objects' cuboids, the camera, and what supports what.
-            progress: reports and cancellation.
+            inputs, objects, geometry, progress: as documented in `protocols.RetrievalStage`.
         """
         shapes = self.library.shapes()
         placed = {c.object_id for c in geometry.cuboids}
@@ -95,10 +90,7 @@ class MatchedByLooks:
         """At most `shapes` of every object that was placed; nothing for kinds of which the library has none.
 
         Args:
-            inputs: as given.
-            objects: what was found in the photo, with masks.
-            geometry: the objects' cuboids, the camera, and what supports what.
-            progress: reports and cancellation.
+            inputs, objects, geometry, progress: as documented in `protocols.RetrievalStage`.
         """
         similarity = self.similarity or EmbeddedSimilarity(self.library)
         placed = {c.object_id for c in geometry.cuboids}

@@ -39,10 +39,7 @@ def with_seen_kinds(
 def as_it_looks(shares: Mapping[str, float], looks_like: Sequence[tuple[str, float]], named: bool) -> dict[str, float]:
     """How likely each kind is after a look at the thing.
 
-    Args:
-        shares: how likely each kind is before it, adding up to 1.
-        looks_like: kinds with probabilities where all are equally frequent; without any, nothing changes.
-        named: whether the shares come from a word.
+    Without any looks nothing changes.
     """
     if not looks_like:
         return dict(shares)
@@ -55,13 +52,7 @@ def as_it_looks(shares: Mapping[str, float], looks_like: Sequence[tuple[str, flo
 def as_measured(
     shares: Mapping[str, float], size_m: Float[np.ndarray, "3"], settings: MeasuredSizeSettings = SETTINGS.sizes
 ) -> dict[str, float]:
-    """How likely each kind is once the thing was measured, but for a common factor.
-
-    Args:
-        shares: how likely each kind is before.
-        size_m: depth, width and height of its cuboid, metres.
-        settings: numbers to work with.
-    """
+    """How likely each kind is once the thing was measured, but for a common factor."""
     size_m = np.maximum(size_m, settings.min_m)
     usual = {kind: size_density(kind, size_m, settings.sigma) for kind in shares}
     best = max(usual.values())

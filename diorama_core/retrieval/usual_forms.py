@@ -86,7 +86,7 @@ def _plant(shape: Shape) -> str:
 
 
 def _form(
-    library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms
+    library: ShapeLibrary, shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings
 ) -> tuple[str, str]:
     """Base and top."""
     form = shape_form(library, shape, appearance)
@@ -100,7 +100,7 @@ def _form(
     return base, str(form.get("top", "none"))
 
 
-def _cross(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> bool:
+def _cross(appearance: ShapeAppearance, settings: UsualFormSettings) -> bool:
     """Whether front and back legs meet below the seat, as those of folding chairs do."""
     points = appearance.spread_points(settings.leg_points)
     height = (points[:, 2] - points[:, 2].min()) / max(float(np.ptp(points[:, 2])), 1e-9)
@@ -113,7 +113,7 @@ def _cross(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.f
     return bool(min(depths[1:], default=np.inf) < settings.crossing * depths[0])
 
 
-def _outline(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> str:
+def _outline(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings) -> str:
     """From the front: whether it is one piece, and one pane, that fills the rectangle around it."""
 
     def is_rectangular() -> bool:
@@ -127,7 +127,7 @@ def _outline(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSetti
     return "rectangular" if _get_or_compute(OUTLINE_FEATURES, shape, is_rectangular) else "other"
 
 
-def _side(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> str:
+def _side(shape: Shape, appearance: ShapeAppearance, settings: UsualFormSettings) -> str:
     """Whether a seat is seen through from the side."""
 
     def is_closed() -> bool:
@@ -143,12 +143,12 @@ def _get_or_compute(kind: str, shape: Shape, make: Callable[[], bool]) -> bool:
     return bool(cached_features(kind, shape, lambda: np.array([[float(make())]]))[0, 0])
 
 
-def _pieces(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> int:
+def _pieces(appearance: ShapeAppearance, settings: UsualFormSettings) -> int:
     """How many separate pieces are seen from the front: a row of prints is several."""
     return int(cv2.connectedComponents(_draw_outline(appearance, [1, 2], settings))[0]) - 1
 
 
-def _panes(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.forms) -> int:
+def _panes(appearance: ShapeAppearance, settings: UsualFormSettings) -> int:
     """How many large regions the colour has that covers most of the front: bars cut a mirror into panes."""
     colours = cells_of(appearance.face_rgba)[0] + 1
     back_to_front = np.argsort(appearance.vertices[appearance.faces][:, :, 0].mean(axis=1), kind="stable")
@@ -162,7 +162,7 @@ def _panes(appearance: ShapeAppearance, settings: UsualFormSettings = SETTINGS.f
 
 
 def _draw_outline(
-    appearance: ShapeAppearance, axes: list[int], settings: UsualFormSettings = SETTINGS.forms
+    appearance: ShapeAppearance, axes: list[int], settings: UsualFormSettings
 ) -> UInt8[np.ndarray, "p p"]:
     """The outline along the remaining axis, 1 where there is something, stretched to a square."""
     drawn = np.zeros((settings.drawn_px, settings.drawn_px), np.uint8)
@@ -172,7 +172,7 @@ def _draw_outline(
 
 
 def _triangles_px(
-    appearance: ShapeAppearance, axes: list[int], settings: UsualFormSettings = SETTINGS.forms
+    appearance: ShapeAppearance, axes: list[int], settings: UsualFormSettings
 ) -> Int32[np.ndarray, "f 3 2"]:
     """The triangles along the remaining axis, in pixels of the square to which the shape is stretched."""
     flat = appearance.vertices[:, axes]

@@ -48,10 +48,7 @@ def nouns_of_few(
     The kind's own name, names of kinds and what is said loosely of several kinds tell nothing.
 
     Args:
-        library: Whose shapes.
-        label: As a person or a detector called the object.
-        category: The kind.
-        settings: Numbers to work with.
+        library, label, category, settings: as of `words_factor`.
     """
     members = library.in_category(category)
     captions = [set(tokens(shape.caption)) for shape in members]
@@ -77,11 +74,7 @@ def description_share(
     only what no shape here is known for: then words do not tell the shapes apart.
 
     Args:
-        library: Whose words.
-        label: As a person or a detector called the object; a number at its end is of no account.
-        category: The object's kind, whose own words describe nothing.
-        shapes: Of the library.
-        settings: Numbers to work with.
+        library, label, category, shapes, settings: as of `words_factor`.
     """
     query = understand(label)
     words = (*query.words, *nouns_of_few(library, label, category, settings))

@@ -37,7 +37,7 @@ def desk_with_a_box_below(room: Room, scores: tuple[float, float] = (0.5, 0.4), 
 
 def overlaps(scene: Scene) -> dict[tuple[int, int], float]:
     problem = build_problem(scene, LIBRARY)
-    return part_overlaps(problem, problem.R, problem.p, problem.scale)
+    return part_overlaps(problem)
 
 
 def test_a_desk_takes_the_shape_that_has_room_for_what_is_below_it(room: Room) -> None:

@@ -21,9 +21,8 @@ LIBRARY = box_library()
 
 def overlap_m(scene: Scene, moved: str, offset: np.ndarray) -> float:
     problem = build_problem(scene, LIBRARY)
-    p = problem.p.copy()
-    p[problem.ids.index(moved)] += offset
-    return max(part_overlaps(problem, problem.R, p, problem.scale).values(), default=0.0)
+    problem.p[problem.ids.index(moved)] += offset
+    return max(part_overlaps(problem).values(), default=0.0)
 
 
 @settings(max_examples=25)

@@ -63,23 +63,25 @@ def test_damaged_bytes_are_refused(data: bytes) -> None:
         codec.load(data)
 
 
-def test_only_known_classes_are_constructed() -> None:
+def zipped(tree: dict, *arrays: bytes) -> bytes:
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
-        archive.writestr("tree.json", json.dumps({"class": "Popen", "fields": {"args": "true"}}))
+        archive.writestr("tree.json", json.dumps(tree))
+        for k, array in enumerate(arrays):
+            archive.writestr(f"{k}.npy", array)
+    return buffer.getvalue()
+
+
+def test_only_known_classes_are_constructed() -> None:
     with pytest.raises(ProjectError, match="damaged"):
-        codec.load(buffer.getvalue())
+        codec.load(zipped({"class": "Popen", "fields": {"args": "true"}}))
 
 
 def test_pickled_arrays_are_refused() -> None:
     raw = io.BytesIO()
     np.save(raw, np.array([{"a": 1}], dtype=object), allow_pickle=True)
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w") as archive:
-        archive.writestr("tree.json", json.dumps({"array": 0}))
-        archive.writestr("0.npy", raw.getvalue())
     with pytest.raises(ProjectError, match="damaged"):
-        codec.load(buffer.getvalue())
+        codec.load(zipped({"array": 0}, raw.getvalue()))
 
 
 def test_inputs_saved_under_former_names_are_read() -> None:
@@ -98,8 +100,5 @@ def test_inputs_saved_under_former_names_are_read() -> None:
 
 def test_a_source_that_no_enum_names_is_refused() -> None:
     tree = {"class": "CameraSource", "fields": {"focal": "hearsay", "attitude": "floor", "heading": "walls"}}
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w") as archive:
-        archive.writestr("tree.json", json.dumps(tree))
     with pytest.raises(ProjectError, match="damaged"):
-        codec.load(buffer.getvalue())
+        codec.load(zipped(tree))

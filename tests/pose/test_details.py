@@ -30,7 +30,7 @@ def chest(drawers: int) -> trimesh.Trimesh:
 
 
 def hits_of(mesh: trimesh.Trimesh, seen: Observed) -> ShapeHits:
-    batch = PoseBatch(POSE.R_world_object[None], POSE.position[None], POSE.scale[None])
+    batch = PoseBatch.single(POSE)
     return ShapeCaster(mesh).cast(seen.origin_world, seen.directions_world, batch)
 
 
@@ -38,7 +38,7 @@ def photo_of_chest(mesh: trimesh.Trimesh) -> tuple[np.ndarray, Observed]:
     """The chest in a photo, its grooves dark."""
     k = CAMERA.intrinsics
     x, y = np.meshgrid(np.arange(k.width) + 0.5, np.arange(k.height) + 0.5)
-    batch = PoseBatch(POSE.R_world_object[None], POSE.position[None], POSE.scale[None])
+    batch = PoseBatch.single(POSE)
     rays = CAMERA.rays(np.stack([x.ravel(), y.ravel()], axis=1))
     hits = ShapeCaster(mesh).cast(CAMERA.position, rays, batch)
     mask = hits.is_hit.reshape(k.height, k.width)
@@ -84,7 +84,7 @@ def photo_of(shape: ShapeAppearance, brightness: float) -> tuple[np.ndarray, Obs
     """The block in its colours, in some light."""
     k = CAMERA.intrinsics
     x, y = np.meshgrid(np.arange(k.width) + 0.5, np.arange(k.height) + 0.5)
-    batch = PoseBatch(POSE.R_world_object[None], POSE.position[None], POSE.scale[None])
+    batch = PoseBatch.single(POSE)
     hits = shape.caster.cast(CAMERA.position, CAMERA.rays(np.stack([x.ravel(), y.ravel()], axis=1)), batch)
     mask = hits.is_hit.reshape(k.height, k.width)
     rgb = shape.face_rgba[np.where(hits.is_hit[0], hits.triangles[0], 0), :3].reshape(k.height, k.width, 3)
@@ -96,7 +96,7 @@ def photo_of(shape: ShapeAppearance, brightness: float) -> tuple[np.ndarray, Obs
 
 def told(details: Details, seen: Observed, shape: ShapeAppearance) -> tuple[float, float]:
     """Share of colours explained, and the log likelihood."""
-    batch = PoseBatch(POSE.R_world_object[None], POSE.position[None], POSE.scale[None])
+    batch = PoseBatch.single(POSE)
     hits = shape.caster.cast(seen.origin_world, seen.directions_world, batch)
     return details.share_between_parts(shape, hits), details.log_likelihood(shape, hits)
 

@@ -93,7 +93,7 @@ def test_a_shape_that_is_open_where_one_sees_past_the_object_is_likelier(evidenc
     room = Room(camera_at(), (standing("chair", 0.2, 2.6, 30.0),), (0,))
     caster = ShapeCaster(LIBRARY.mesh("chair"))
     pose = room.placed[0].pose
-    poses = PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None])
+    poses = PoseBatch.single(pose)
     shown = evidence.seen.silhouettes(caster, poses)[0].astype(float)
     told = SeeThrough(evidence.seen.window, shown, np.ones(len(shown)), 0.8)
     smaller = PoseBatch(poses.R, poses.position, 0.5 * poses.scale)

@@ -49,7 +49,7 @@ def test_posed_shapes_land_on_their_boxes_and_keep_their_base() -> None:
 
 
 def shape_box_iou(room: Room, shape_id: str, pose: Pose, box) -> float:
-    batch = PoseBatch(pose.R_world_object[None], pose.position[None], pose.scale[None])
+    batch = PoseBatch.single(pose)
     return float(box_iou(ShapeCaster(LIBRARY.mesh(shape_id)).bounds_px(room.camera, batch), np.array(box))[0])
 
 

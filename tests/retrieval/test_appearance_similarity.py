@@ -14,7 +14,6 @@ from diorama_core.models.runtime import SessionPool
 from diorama_core.progress import Progress
 from diorama_core.render.views import StudioView, render_shape
 from diorama_core.retrieval.appearance_similarity import NEUTRAL, EmbeddedSimilarity, ObjectCrop
-from diorama_core.retrieval.feature_cache import cached_features
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.retrieval.joint import ClipEmbedding, JointSimilarity
 from tests.models import tiny_networks
@@ -62,26 +61,6 @@ def test_forms_of_shapes_agree_whatever_their_size_and_colours(tmp_path: Path) -
     assert similarity.form_agreement(chair, chair) == pytest.approx(1.0)
     assert similarity.form_agreement(chair, sofa) < similarity.form_agreement(low, sofa) < 0.99
     assert similarity.form_agreement(low, sofa) == pytest.approx(similarity.form_agreement(sofa, low))
-
-
-def test_features_are_made_once_and_survive_a_damaged_file(tmp_path: Path) -> None:
-    made = []
-
-    def make() -> np.ndarray:
-        made.append(1)
-        return np.full((2, 3), 0.25)
-
-    shape = LIBRARY.shape("chair")
-    assert (cached_features("a", shape, make, tmp_path) == 0.25).all()
-    assert cached_features("a", shape, make, tmp_path).dtype == np.float16
-    assert len(made) == 1
-    other = replace(shape, content_hash="")
-    cached_features("a", other, make, tmp_path)
-    cached_features("a", other, make, tmp_path)
-    assert len(made) == 3
-    (tmp_path / "b").mkdir()
-    (tmp_path / "b" / f"{shape.content_hash}.npy").write_bytes(b"half a fi")
-    assert (cached_features("b", shape, make, tmp_path) == 0.25).all()
 
 
 @pytest.fixture(scope="module")

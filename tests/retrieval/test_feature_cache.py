@@ -51,6 +51,10 @@ def test_features_are_made_once(shape: Shape, tmp_path: Path, monkeypatch: pytes
     assert has_features("clip", shape, tmp_path)
 
 
+def test_what_has_no_hash_is_made_each_time(shape: Shape, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert [found(replace(shape, content_hash=""), tmp_path, monkeypatch)[1] for _ in range(2)] == [1, 1]
+
+
 def lying() -> bytes:
     """A header that states more than any machine has."""
     buffer = io.BytesIO()

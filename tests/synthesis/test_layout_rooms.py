@@ -16,7 +16,7 @@ def test_truth_is_exact_and_free_of_overlap(seed: int, count: int) -> None:
     assert len(room.truth.objects) == count
     check_scene(room.truth)
     problem = build_problem(room.truth, box_library())
-    figures = measure(problem, problem.R, problem.p, problem.scale)
+    figures = measure(problem, problem)
     assert figures["structure"] == 1.0
     assert figures["in_support"] == 1.0
     assert figures["part_overlap_m"] < 1e-6

@@ -9,13 +9,13 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from diorama_core.errors import UnavailableError
-from diorama_core.evaluation.metrics.scene import measure_scene
 from diorama_core.evaluation.speed.eager import our_seconds, pair_by_pair_seconds
 from diorama_core.layout.exact import drift, mesh_overlap_m3, stable_share
 from diorama_core.layout.feasible.local import DragSolver
 from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.published.recipes import AllInOneRecipe, PaperRecipe, one_thread
 from diorama_core.layout.recipes import recipe
+from diorama_core.layout.report import measure
 from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import LayoutStage
 from diorama_core.scene.types import Pose, Scene
@@ -151,7 +151,8 @@ def _row(name: str, stage: LayoutStage | None, rooms: Sequence[GeneratedRoom], p
         begun = time.thread_time()
         scene = room.observed if stage is None else stage.optimise(room.observed, Progress())[0]
         seconds.append(time.thread_time() - begun)
-        measured.append(measure_scene(build_problem(room.observed, library), scene))
+        problem = build_problem(room.observed, library)
+        measured.append(measure(problem, problem.with_poses_of(scene)))
         offsets.append(offset_m(room.truth, scene))
         overlap_before += mesh_overlap_m3(room.observed, library)
         overlap_after += mesh_overlap_m3(scene, library)

@@ -27,7 +27,7 @@ from diorama_core.geometry.planes import is_in_plane_polygon
 from diorama_core.geometry.projection import box_iou
 from diorama_core.geometry.ray_scene import RayScene
 from diorama_core.layout.exact import drift, mesh_overlap_m3, stable_share
-from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.report import measure
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.render.raycast import MeshCaster
@@ -356,11 +356,5 @@ def structure_of(scene: Scene, library: ShapeLibrary) -> dict[str, float]:
     """The layout report's shares and overlaps of a scene as it is; all 0 for an empty one."""
     if not scene.objects:
         return {"orientation": 0.0, "placement": 0.0, "structure": 0.0, "box_overlap_m": 0.0}
-    return measure_scene(build_problem(scene, library), scene)
-
-
-def measure_scene(problem: Problem, scene: Scene) -> dict[str, float]:
-    """What the layout report says of a scene's poses under a problem's graph and room."""
-    poses = [scene.object(i).pose for i in problem.ids]
-    turns, positions, scales = ([getattr(p, n) for p in poses] for n in ("R_world_object", "position", "scale"))
-    return measure(problem, np.array(turns), np.array(positions), np.array(scales))
+    problem = build_problem(scene, library)
+    return measure(problem, problem)

@@ -37,10 +37,8 @@ def step_seconds(way: str, count: int, seed: int) -> float | None:
 
 def our_seconds(problem: Problem) -> float:
     """Processor seconds of one of our steps."""
-    schedule = staged.StageSchedule()
-    state = staged.State(problem.R.copy(), problem.p.copy(), problem.scale.copy())
-    work = partial(staged.refinement_stage, problem, state, schedule, lambda *_: None)
-    return cost_of(work).seconds / schedule.steps
+    state = staged.State(problem, staged.StageSchedule(), lambda *_: None)
+    return cost_of(partial(staged.refinement_stage, state)).seconds / state.schedule.steps
 
 
 def pair_by_pair_seconds(problem: Problem) -> float:

@@ -35,10 +35,6 @@ def joint_heights(problem: Problem, observations: PhotoObservations) -> tuple[Pr
 
     Each end of an object counts relative to how high the object looks in the picture: a centimetre is much for a cup
     and little for the table below it. Objects that are exact already stay as they are, since nothing disagrees.
-
-    Args:
-        problem: at measured places.
-        observations: what the camera saw of it.
     """
     chains = _chains(problem, observations)
     if not chains.members:

@@ -32,13 +32,7 @@ class DragSolver:
 
     @classmethod
     def prepare(cls, scene: Scene, library: ShapeLibrary, object_id: str) -> DragSolver:
-        """Gather what stays the same during a drag.
-
-        Args:
-            scene: as it is.
-            library: where shapes come from.
-            object_id: of the object.
-        """
+        """Gather what stays the same during a drag."""
         problem = build_problem(scene, library, only=frozenset({object_id}))
         index = problem.ids.index(object_id)
         return cls(scene, problem, index, _places(scene, library, problem, index))
@@ -59,8 +53,7 @@ class DragSolver:
         separation = separate(program, rounds=self.rounds, check=lambda y, depth: None)
         if separation.stuck:
             separation = relax(program, relocate(program, base(program)))
-        p = structure.p + program.moves(separation.y)
-        moved = edits.place(self.scene, problem.poses(structure.R, p, structure.scale))
+        moved = edits.place(self.scene, program.layout(separation.y).free_poses)
         return moved if edge is None else edits.attach(moved, edge)
 
     def _problem_at(self, pose: Pose) -> tuple[Problem, Support | None]:

@@ -131,7 +131,7 @@ class PhotoObservations:
         settled = not self.contradicted[i] and np.linalg.norm(p - self.observed[i]) < self.settings.moved_m
         if settled or not len(self.tracked[i].points):
             return p, scale
-        fit = self.fit(i, R, p, scale, basis, pinned, grown)
+        fit = self._object_fit(i, R, p, scale, basis, pinned, grown)
         low, high = np.log(grown * self.least[i] / scale), np.log(grown * self.most[i] / scale)
         x = np.zeros(5)
         for _ in range(self.settings.fit_steps):
@@ -141,7 +141,7 @@ class PhotoObservations:
             x = x + solve_bounded_step(*system, low - x[2:], high - x[2:])
         return fit.centre(x), fit.scale * np.exp(x[2:])
 
-    def fit(
+    def _object_fit(
         self,
         i: int,
         R: np.ndarray,
@@ -151,17 +151,7 @@ class PhotoObservations:
         pinned: np.ndarray,
         grown: float = 1.0,
     ) -> ObjectFit:
-        """The least-squares problem of one object; arguments as in `fit_centre_and_scale`.
-
-        Args:
-            i: index of the object.
-            R: its settled rotation.
-            p: its settled centre.
-            scale: its settled scale.
-            basis: world directions in which it may still move.
-            pinned: point of its box, in half extents, that stays put.
-            grown: what its distance and its size were multiplied by already.
-        """
+        """The least-squares problem of one object; arguments as in `fit_centre_and_scale`."""
         local = pinned * self.size[i] / 2
         observed = self.camera.position + grown * (self.observed[i] - self.camera.position)
         tracked = self.tracked[i]
@@ -253,48 +243,33 @@ def _loads(problem: Problem, i: int) -> Float[np.ndarray, "m 2"]:
 
 
 def _outline_points(problem: Problem) -> tuple[Float[np.ndarray, "_ 3"], ...]:
-    return tuple(_outline_points_of(problem, i) for i in range(problem.count))
-
-
-def _outline_points_of(problem: Problem, i: int) -> Float[np.ndarray, "_ 3"]:
     packed = problem.packed
-    return np.unique(packed.vertices[packed.owner == i].reshape(-1, 3), axis=0)
+    return tuple(np.unique(packed.vertices[packed.owner == i].reshape(-1, 3), axis=0) for i in range(problem.count))
+
+
+def _outlines_world(problem: Problem) -> list[Float[np.ndarray, "_ 3"]]:
+    points, poses = _outline_points(problem), zip(problem.R, problem.p, problem.scale, strict=True)
+    return [(own * scale) @ R.T + p for own, (R, p, scale) in zip(points, poses, strict=True)]
 
 
 def _project_all_bounds_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4"]:
     """Bounds of each posed shape in the picture, not cut at its border; NaN for those behind the camera."""
-    bounds_px = [project_bounds_px(problem, camera, i, problem.p[i], problem.scale[i]) for i in range(problem.count)]
-    return np.array(bounds_px).reshape(-1, 4)
+    bounds = np.full((problem.count, 4), np.nan)
+    for i, world in enumerate(_outlines_world(problem)):
+        if camera.to_camera(world)[:, 2].min() >= problem.settings.nearest_m:
+            flat = camera.project(world)
+            bounds[i] = [*flat.min(axis=0), *flat.max(axis=0)]
+    return bounds
 
 
 def _bounds_in_picture_px(problem: Problem, camera: Camera) -> Float[np.ndarray, "n 4"]:
     """Bounds of what the picture shows of each posed shape, cut at its border; NaN for those outside it."""
     k, bounds = camera.intrinsics, np.full((problem.count, 4), np.nan)
-    for i, points in enumerate(_outline_points(problem)):
-        world = (points * problem.scale[i]) @ problem.R[i].T + problem.p[i]
+    for i, world in enumerate(_outlines_world(problem)):
         flat = camera.project(world[camera.to_camera(world)[:, 2] >= problem.settings.nearest_m])
         if len(flat):
             bounds[i] = np.clip([*flat.min(axis=0), *flat.max(axis=0)], 0, [k.width, k.height] * 2)
     return bounds
-
-
-def project_bounds_px(
-    problem: Problem, camera: Camera, i: int, p: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]
-) -> Float[np.ndarray, "4"]:
-    """Bounds in the picture of one object at another place or size, not cut at its border; NaN behind the camera.
-
-    Args:
-        problem: the layout as observed, with its supports.
-        camera: what looks at it.
-        i: index of the object.
-        p: its centre, world, metres.
-        scale: along its axes.
-    """
-    world = (_outline_points_of(problem, i) * scale) @ problem.R[i].T + p
-    if camera.to_camera(world)[:, 2].min() < problem.settings.nearest_m:
-        return np.full(4, np.nan)
-    flat = camera.project(world)
-    return np.array([*flat.min(axis=0), *flat.max(axis=0)])
 
 
 def _select_bounds_px(
@@ -343,28 +318,13 @@ def _find_hidden_sides(problem: Problem, camera: Camera) -> Bool[np.ndarray, "n 
     return hidden
 
 
-def disagreements(
-    problem: Problem,
-    camera: Camera,
-    R: Float[np.ndarray, "n 3 3"],
-    p: Float[np.ndarray, "n 3"],
-    scale: Float[np.ndarray, "n 3"],
-) -> tuple[PhotoDisagreement, ...]:
-    """The free objects that a layout took clearly away from where the camera saw them.
-
-    Args:
-        problem: the observed layout.
-        camera: what looks at it.
-        R: rotations after the layout.
-        p: centres, world, metres.
-        scale: along the axes of each object.
-    """
-    seen = _project_all_bounds_px(problem, camera)
-    now = _project_all_bounds_px(replace(problem, R=R, p=p, scale=scale), camera)
+def disagreements(observed: Problem, now: Problem, camera: Camera) -> tuple[PhotoDisagreement, ...]:
+    """The free objects that a layout took clearly away from where the camera saw them."""
+    before, after = (_project_all_bounds_px(layout, camera) for layout in (observed, now))
     rows = []
-    for i in np.flatnonzero(problem.free):
-        moved = float(np.linalg.norm(p[i] - problem.p[i]))
-        shared = float(box_iou(seen[i], now[i])) if np.isfinite([seen[i], now[i]]).all() else 1.0
-        if moved > problem.settings.named_move_m or shared < problem.settings.named_outline:
-            rows.append(PhotoDisagreement(problem.ids[i], problem.labels[i], moved, shared))
+    for i in np.flatnonzero(now.free):
+        moved = float(np.linalg.norm(now.p[i] - observed.p[i]))
+        shared = float(box_iou(before[i], after[i])) if np.isfinite([before[i], after[i]]).all() else 1.0
+        if moved > now.settings.named_move_m or shared < now.settings.named_outline:
+            rows.append(PhotoDisagreement(now.ids[i], now.labels[i], moved, shared))
     return tuple(rows)

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.artefacts import LayoutReport, PhotoDisagreement
+from diorama_core.artefacts import LayoutReport
 from diorama_core.geometry.sat import place_bodies
 from diorama_core.layout.feasible.heights import joint_heights
 from diorama_core.layout.feasible.photo_observations import PhotoObservations, disagreements, photo_observations
@@ -70,18 +70,13 @@ class FeasibleRecipe:
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
         """Returns the scene with every free object's pose made feasible, and what was achieved.
 
-        Args:
-            scene: as observed.
-            progress: reports and cancellation.
-            preview: called with the layout as it becomes.
-
         Raises:
             Cancelled: when asked to stop; nothing was changed then.
         """
         begun = time.perf_counter()
         progress.report(0.0, "reading the layout")
         problem = build_problem(scene, self.library, only=self.only, adherence_m=0.0, settings=self.settings)
-        before = measure(problem, problem.R, problem.p, problem.scale)
+        before = measure(problem, problem)
         watched = scene.camera is not None and self._across > 1.0
         visible = visible_points(scene, self.library, self.settings) if watched else {}
         wanted, observations = self._infer_unseen(problem, scene.camera, visible)
@@ -105,21 +100,16 @@ class FeasibleRecipe:
         assert best is not None, "there is at least one attempt"
         wanted, program, separation = best
         structure = program.structure
-        p = structure.p + program.moves(separation.y)
-        after = measure(replace(problem, surface=structure.surface), structure.R, p, structure.scale)
+        now = program.layout(separation.y)
+        after = measure(problem, replace(now, surface=structure.surface))
+        apart = () if scene.camera is None else disagreements(problem, now, scene.camera)
         reasons = (
-            problem.reasons
-            + structure.reasons
-            + _explain_smaller(problem, wanted, structure)
-            + _explain_overlaps(problem, separation)
+            *(problem.reasons + structure.reasons + _explain_smaller(problem, wanted, structure)),
+            *(f"no room: {problem.labels[i]} and {problem.labels[j]} still overlap" for i, j in separation.stuck),
+            *map(disagreement_in_words, apart),
         )
-        apart: tuple[PhotoDisagreement, ...] = ()
-        if scene.camera is not None:
-            apart = disagreements(problem, scene.camera, structure.R, p, structure.scale)
-        reasons += tuple(map(disagreement_in_words, apart))
         report = LayoutReport("feasible", before, after, time.perf_counter() - begun, reasons, apart)
-        settled = edits.place(scene, problem.poses(structure.R, p, structure.scale))
-        return edits.set_metrics(settled, after), report
+        return edits.set_metrics(edits.place(scene, now.free_poses), after), report
 
     def _infer_unseen(
         self, problem: Problem, camera: Camera | None, visible: VisiblePoints
@@ -151,17 +141,16 @@ class FeasibleRecipe:
         self, scene: Scene, program: Program, progress: Progress, preview: Preview | None
     ) -> Callable[[np.ndarray, float], None]:
         turn = 0
-        structure, problem = program.structure, program.problem
 
         def check(y: np.ndarray, depth: float) -> None:
             nonlocal turn
             turn += 1
             progress.report(turn / (self.rounds + 1), "taking collisions away")
             if preview is not None:
-                poses = problem.poses(structure.R, structure.p + program.moves(y), structure.scale)
-                moved = np.linalg.norm(structure.p + program.moves(y) - problem.p, axis=1)
+                now = program.layout(y)
+                moved = np.linalg.norm(now.p - program.problem.p, axis=1)
                 costs = (("overlap_m", max(depth, 0.0)), ("moved_m", float(moved.mean())))
-                preview(edits.place(scene, poses), costs)
+                preview(edits.place(scene, now.free_poses), costs)
 
         return check
 
@@ -250,18 +239,11 @@ def _explain_smaller(problem: Problem, wanted: Problem, structure: Structure) ->
     return tuple(f"{problem.labels[i]} was made smaller to fit between its neighbours" for i in smaller)
 
 
-def _explain_overlaps(problem: Problem, separation: Separation) -> tuple[str, ...]:
-    return tuple(f"no room: {problem.labels[i]} and {problem.labels[j]} still overlap" for i, j in separation.stuck)
-
-
 def fit_sizes(program: Program, outline_cost: Float[np.ndarray, " n"]) -> Structure:
     """The structure with colliding objects smaller where that costs less than the moves it saves.
 
-    Objects that hold up others keep their sizes.
-
-    Args:
-        program: the moves that are possible, and what they cost.
-        outline_cost: what a metre of outline counts, by object, in the unit of `Program.cost`.
+    Objects that hold up others keep their sizes. `outline_cost` is what a metre of outline counts, by object, in the
+    unit of `Program.cost`.
     """
     problem = program.problem
     factors = np.ones((problem.count, 3))

@@ -8,7 +8,7 @@ the many axes is chosen decides everything; so for two compounds that touch the 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -55,6 +55,10 @@ class Program:
     def moves(self, y: Float[np.ndarray, " v"]) -> Float[np.ndarray, "n 3"]:
         """World move of every object."""
         return self.J @ y
+
+    def layout(self, y: Float[np.ndarray, " v"]) -> Problem:
+        """The problem's objects after these moves."""
+        return self.problem.with_poses(self.structure.R, self.structure.p + self.moves(y), self.structure.scale)
 
     def cost(self, y: Float[np.ndarray, "*s v"]) -> Float[np.ndarray, "*s"]:
         """What moves cost: metres, weighted."""
@@ -133,7 +137,7 @@ def _wall_rows(
     fixed = {(i, w) for i, w, _ in problem.adheres}
     starts = np.searchsorted(bodies.owner, np.arange(problem.count))
     radius = 0.5 * np.linalg.norm(problem.shape_size * structure.scale, axis=1)
-    settled = replace(problem, R=structure.R, p=structure.p, scale=structure.scale)
+    settled = problem.with_poses(structure.R, structure.p, structure.scale)
     in_room = is_in_polygon(structure.p[:, :2], problem.floor_outline)
     for w, wall in enumerate(problem.walls if problem.count else ()):
         if not wall.is_seen:
@@ -154,10 +158,7 @@ def _wall_rows(
 def separate(program: Program, *, rounds: int, check: Callable[[Float[np.ndarray, " v"], float], None]) -> Separation:
     """Alternate between choosing separating axes and solving, until nothing overlaps or the rounds are used up.
 
-    Args:
-        program: what may move and how.
-        rounds: most rounds.
-        check: called each round with the moves and the deepest overlap; may raise to cancel.
+    `check` is called each round with the moves and the deepest overlap; it may raise to cancel.
     """
     y = base(program)
     best: tuple[float, np.ndarray] = (np.inf, y)

@@ -39,13 +39,7 @@ class TrackedPoints:
 
 
 def visible_points(scene: Scene, library: ShapeLibrary, settings: LayoutSettings = LAYOUT) -> VisiblePoints:
-    """Points that the scene's camera sees of each object; none of what is hidden or outside the picture.
-
-    Args:
-        scene: as observed.
-        library: where shapes come from.
-        settings: numbers to work with.
-    """
+    """Points that the scene's camera sees of each object; none of what is hidden or outside the picture."""
     from diorama_core.render.raycast import MeshCaster  # the editor opens without it
 
     items = [o for o in scene.objects if not o.hidden]

@@ -104,13 +104,6 @@ class Problem:
         return len(self.ids)
 
     @cached_property
-    def reach(self) -> Float[np.ndarray, "n 3"]:
-        """Half extents of a box around each object's centre that contains its parts, at scale 1, its own axes."""
-        reach = np.zeros((self.count, 3))
-        np.maximum.at(reach, self.packed.owner, np.abs(self.packed.vertices).max(axis=1))
-        return reach
-
-    @cached_property
     def top_down(self) -> tuple[int, ...]:
         """Object indices, supporters before what they support."""
         depth = [len(self.chain(i)) for i in range(self.count)]
@@ -162,17 +155,25 @@ class Problem:
         beside = (behind @ surface.outward.T - surface.offset).max(axis=1) > -self.settings.behind_m
         return len(behind) > 0 and bool((beside & is_in_polygon(behind[:, :2], self.floor_outline)).all())
 
-    def poses(
+    def with_poses(
         self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
-    ) -> dict[str, Pose]:
-        """Poses of the objects that were free to move.
+    ) -> Problem:
+        """This problem with its objects in other poses."""
+        return replace(self, R=R, p=p, scale=scale)
 
-        Args:
-            R: rotations, world from object.
-            p: centres, world, metres.
-            scale: along the axes of each object.
-        """
-        return {self.ids[i]: Pose(R[i], p[i], scale[i]) for i in range(self.count) if self.free[i]}
+    def with_poses_of(self, scene: Scene) -> Problem:
+        """This problem with its objects in the poses that they have in a scene."""
+        poses = [scene.object(name).pose for name in self.ids]
+        return self.with_poses(
+            np.array([pose.R_world_object for pose in poses]).reshape(-1, 3, 3),
+            np.array([pose.position for pose in poses]).reshape(-1, 3),
+            np.array([pose.scale for pose in poses]).reshape(-1, 3),
+        )
+
+    @property
+    def free_poses(self) -> dict[str, Pose]:
+        """Poses of the objects that are free to move."""
+        return {self.ids[i]: Pose(self.R[i], self.p[i], self.scale[i]) for i in np.flatnonzero(self.free)}
 
 
 def build_problem(

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 import torch
@@ -13,7 +14,7 @@ import torch
 from diorama_core.artefacts import LayoutReport
 from diorama_core.geometry.rotations import rotation_from_vector
 from diorama_core.layout.gradients import candidate_pairs
-from diorama_core.layout.problem.problem import Problem, build_problem
+from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.problem.volumes import Volumes, contact_templates
 from diorama_core.layout.published import costs, staged
 from diorama_core.layout.published.staged import Edges, Report, StageSchedule, State
@@ -30,66 +31,61 @@ TOGETHER = StageSchedule(steps=400, decay_every=100)
 
 
 @dataclass(frozen=True)
-class PaperRecipe:
-    """Orientation, placement, space, refinement: each its own parameters, costs and steps."""
+class _Recipe:
+    """Steps of a schedule, and the scene and report that they lead to."""
 
     library: ShapeLibrary
     only: frozenset[str] | None = None
     """Ids free to move (with what they hold up); all when None."""
     schedule: StageSchedule = PUBLISHED
-    stages: int = 4
-    """How many of the four stages to run, for the ablation."""
     adherence_m: float = 0.1
     """Objects on the floor nearer to a wall than this are drawn to it."""
     weights: Weights = AS_IT_IS
+    _name: ClassVar[str]
+
+    @property
+    def _stages(self) -> tuple[Callable[[State], None], ...]:
+        """Done one after another."""
+        raise NotImplementedError
 
     def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
-        """Run the stages; raises `Cancelled` when asked to stop.
-
-        Args:
-            scene: as observed.
-            progress: reports and cancellation.
-            preview: called with the layout as it becomes.
-        """
+        """Run all steps; raises `Cancelled` when asked to stop."""
         begun = time.perf_counter()
         problem = build_problem(scene, self.library, only=self.only, adherence_m=self.adherence_m)
-        state = State(problem.R.copy(), problem.p.copy(), problem.scale.copy())
-        report = _reporter(scene, problem, progress, preview, self.schedule.steps * self.stages)
-        stages = (staged.orientation_stage, staged.placement_stage, staged.space_stage, staged.refinement_stage)
-        for stage in stages[: self.stages]:
-            if problem.count:
-                stage(problem, state, self.schedule, report, weights=self.weights)
-        return _place_and_report("paper", scene, problem, state, begun)
+        stages = self._stages
+        report = _reporter(scene, progress, preview, self.schedule.steps * len(stages))
+        state = State(problem, self.schedule, report, self.weights)
+        for stage in stages if problem.count else ():
+            stage(state)
+        before, after = measure(problem, problem), measure(problem, state.layout)
+        made = LayoutReport(self._name, before, after, time.perf_counter() - begun, problem.reasons)
+        return edits.set_metrics(edits.place(scene, state.layout.free_poses), after), made
 
 
 @dataclass(frozen=True)
-class AllInOneRecipe:
+class PaperRecipe(_Recipe):
+    """Orientation, placement, space, refinement: each its own parameters, costs and steps."""
+
+    stages: int = 4
+    """How many of the four stages to run, for the ablation."""
+    _name: ClassVar[str] = "paper"
+
+    @property
+    def _stages(self) -> tuple[Callable[[State], None], ...]:
+        stages = (staged.orientation_stage, staged.placement_stage, staged.space_stage, staged.refinement_stage)
+        return stages[: self.stages]
+
+
+@dataclass(frozen=True)
+class AllInOneRecipe(_Recipe):
     """Every term at once, over rotation, position and scale together (torch, one thread)."""
 
-    library: ShapeLibrary
-    only: frozenset[str] | None = None
-    """Ids free to move (with what they hold up); all when None."""
     schedule: StageSchedule = TOGETHER
-    adherence_m: float = 0.1
-    """Objects on the floor nearer to a wall than this are drawn to it."""
-    weights: Weights = AS_IT_IS
+    _name: ClassVar[str] = "all-in-one"
 
-    def optimise(self, scene: Scene, progress: Progress, preview: Preview | None = None) -> tuple[Scene, LayoutReport]:
-        """Run the steps; raises `Cancelled` when asked to stop.
-
-        Args:
-            scene: as observed.
-            progress: reports and cancellation.
-            preview: called with the layout as it becomes.
-        """
-        begun = time.perf_counter()
-        problem = build_problem(scene, self.library, only=self.only, adherence_m=self.adherence_m)
-        state = State(problem.R.copy(), problem.p.copy(), problem.scale.copy())
-        if problem.count:
-            report = _reporter(scene, problem, progress, preview, self.schedule.steps)
-            with one_thread():
-                _all_at_once(problem, state, self.schedule, self.weights, report)
-        return _place_and_report("all-in-one", scene, problem, state, begun)
+    @property
+    def _stages(self) -> tuple[Callable[[State], None], ...]:
+        return (_all_at_once,)
 
 
 @contextmanager
@@ -103,66 +99,50 @@ def one_thread() -> Iterator[None]:
         torch.set_num_threads(before)
 
 
-def _reporter(scene: Scene, problem: Problem, progress: Progress, preview: Preview | None, total: int) -> Report:
+def _reporter(scene: Scene, progress: Progress, preview: Preview | None, total: int) -> Report:
+    """Reports each of the steps, and every tenth one's scene to the preview."""
     done = 0
 
     def report(stage: str, step: int, state: State, terms: Mapping[str, float]) -> None:
-        """Report a step of the optimiser, and every tenth one's scene to the preview.
-
-        Args:
-            stage: name of the stage, for the message.
-            step: number of the step within it, from 0.
-            state: poses of all objects.
-            terms: costs by name.
-        """
         nonlocal done
         done += 1
         progress.check()
         if step % 10 == 0:
             progress.report(done / total, f"{stage}, step {step + 1}")
             if preview is not None:
-                poses = problem.poses(staged.orthonormal(state.R), state.p, state.scale)
-                preview(edits.place(scene, poses), tuple(terms.items()))
+                now = replace(state.layout, R=staged.orthonormal(state.R))
+                preview(edits.place(scene, now.free_poses), tuple(terms.items()))
 
     return report
 
 
-def _place_and_report(
-    name: str, scene: Scene, problem: Problem, state: State, begun: float
-) -> tuple[Scene, LayoutReport]:
-    before = measure(problem, problem.R, problem.p, problem.scale)
-    after = measure(problem, state.R, state.p, state.scale)
-    report = LayoutReport(name, before, after, time.perf_counter() - begun, problem.reasons)
-    placed = edits.place(scene, problem.poses(state.R, state.p, state.scale))
-    return edits.set_metrics(placed, after), report
-
-
-def _all_at_once(problem: Problem, state: State, schedule: StageSchedule, weights: Weights, report: Report) -> None:
+@one_thread()
+def _all_at_once(state: State) -> None:
     """Steps on every parameter by the sum of all costs; rotations on their manifold."""
-    terms = _Terms(problem, state, weights)
+    problem, schedule, terms = state.problem, state.schedule, _Terms(state)
     free = torch.tensor(problem.free, dtype=torch.float64)[:, None]
     velocity = [torch.zeros(problem.count, 3, dtype=torch.float64) for _ in range(3)]
     for step, rate in enumerate(schedule.rates()):
         turn = torch.zeros(problem.count, 3, dtype=torch.float64, requires_grad=True)
         p = torch.tensor(state.p, requires_grad=True)
         scale = torch.tensor(state.scale, requires_grad=True)
-        values = terms.evaluate(turn, p, scale, state)
+        values = terms.evaluate(turn, p, scale)
         slopes = torch.autograd.grad(torch.stack(list(values.values())).sum(), [turn, p, scale], allow_unused=True)
         for k, slope in enumerate(slopes):
             velocity[k] = schedule.momentum * velocity[k] + (0.0 if slope is None else slope * free)
         state.R = np.matmul(rotation_from_vector(-schedule.rate * rate * velocity[0].numpy()), state.R)
         state.p = state.p - schedule.rate * rate * velocity[1].numpy()
         state.scale = np.maximum(state.scale - schedule.scale_rate * rate * velocity[2].numpy(), 0.05)
-        report("all terms", step, state, {name: float(v.detach()) for name, v in values.items()})
+        state.report("all terms", step, state, {name: float(v.detach()) for name, v in values.items()})
     state.R = staged.orthonormal(state.R)
 
 
 class _Terms:
     """All costs as a function of every pose."""
 
-    def __init__(self, problem: Problem, state: State, weights: Weights) -> None:
-        self.weights = weights
-        self.problem, self.edges = problem, Edges.of(problem)
+    def __init__(self, state: State) -> None:
+        problem = state.problem
+        self.state, self.edges = state, Edges.of(problem)
         self.observed = torch.tensor(problem.p)
         self.front = torch.tensor(problem.R[:, :, 0])
         self.size = torch.tensor(problem.shape_size)
@@ -175,21 +155,15 @@ class _Terms:
         if len(self.supported):
             self.template = torch.tensor(contact_templates(problem, self.supported)[0])
 
-    def evaluate(
-        self, turn: torch.Tensor, p: torch.Tensor, scale: torch.Tensor, state: State
-    ) -> Mapping[str, torch.Tensor]:
+    def evaluate(self, turn: torch.Tensor, p: torch.Tensor, scale: torch.Tensor) -> Mapping[str, torch.Tensor]:
         """3 e_align, e_sem, 5 e_place, e_rel, e_vol and e_col, weighted; adherence is part of the first and third.
 
-        Args:
-            turn: small rotations, (n, 3) in radians about the world's axes, over those of `state`.
-            p: centres in the world, (n, 3), metres.
-            scale: of every object, (n, 3).
-            state: where the rotations began.
+        Turns are small rotations, (n, 3) in radians about the world's axes, over those of the state.
         """
         x, y, z = turn.T
         zero = torch.zeros_like(x)
         K = torch.stack([zero, -z, y, z, zero, -x, -y, x, zero], dim=1).reshape(-1, 3, 3)
-        R0 = torch.tensor(state.R)
+        R0 = torch.tensor(self.state.R)
         R = R0 + K @ R0
         on = (self.supporter >= 0)[:, None]
         owner_R = torch.where(on[..., None], R[self.supporter], torch.eye(3, dtype=torch.float64))
@@ -200,21 +174,21 @@ class _Terms:
         half = self.contact * self.size[self.child] * scale[self.child] / 2
         centre = p[self.child] + torch.einsum("eij,ej->ei", R[self.child], half)
         inward = -torch.einsum("eij,ej->ei", R[self.child], self.contact)
-        w = self.weights
+        w = self.state.weights
         return {
             "align": 3.0 * w.align * costs.e_align(inward, normal),
             "heading": w.heading * costs.e_sem(R[:, :, 0], self.front),
             "place": 5.0 * w.place * costs.e_place(centre, point, normal),
             "neighbours": w.neighbours * costs.e_rel(p, self.observed, self.relations),
-            "volume": w.volume * self._space(R, p, scale, state),
-            "collision": w.collision * self._overlap(p, state),
+            "volume": w.volume * self._space(R, p, scale),
+            "collision": w.collision * self._overlap(p),
         }
 
-    def _space(self, R: torch.Tensor, p: torch.Tensor, scale: torch.Tensor, state: State) -> torch.Tensor:
+    def _space(self, R: torch.Tensor, p: torch.Tensor, scale: torch.Tensor) -> torch.Tensor:
         if not len(self.supported):
             return torch.zeros((), dtype=torch.float64)
         supported = torch.tensor(self.supported)
-        here = self.volumes.world_volumes(state.R, state.p, state.scale)
+        here = self.volumes.world_volumes(self.state.R, self.state.p, self.state.scale)
         outward, offset, normal = torch.tensor(here.outward), torch.tensor(here.offset), torch.tensor(here.normal)
         clearance, level = torch.tensor(here.clearance), torch.tensor(here.level)
         corners = p[supported][:, None] + torch.einsum(
@@ -224,10 +198,11 @@ class _Terms:
         top = (normal * p[supported]).sum(dim=1) - level + tilt.sum(dim=1)
         return costs.e_vol(corners, top, outward, offset, clearance)
 
-    def _overlap(self, p: torch.Tensor, state: State) -> torch.Tensor:
-        R, centre, size, apart = staged.with_walls(self.problem, state)
+    def _overlap(self, p: torch.Tensor) -> torch.Tensor:
+        R, centre, size, apart = staged.with_walls(self.state)
         pairs = candidate_pairs(R, centre, size, apart, 0.0)
         if not len(pairs):
             return torch.zeros((), dtype=torch.float64)
-        everywhere = torch.cat([p, torch.tensor(centre[self.problem.count :])])
-        return costs.e_col(everywhere, torch.tensor(R), torch.tensor(size), torch.tensor(pairs), self.problem.count)
+        count = self.state.problem.count
+        everywhere = torch.cat([p, torch.tensor(centre[count:])])
+        return costs.e_col(everywhere, torch.tensor(R), torch.tensor(size), torch.tensor(pairs), count)

@@ -40,11 +40,22 @@ class StageSchedule:
 
 @dataclass(eq=False)
 class State:
-    """The layout while it is optimised."""
+    """The layout while it is optimised, which the stages change, and how that is done."""
 
-    R: Float[np.ndarray, "n 3 3"]
-    p: Float[np.ndarray, "n 3"]
-    scale: Float[np.ndarray, "n 3"]
+    problem: Problem
+    """The layout as observed, with its supports."""
+    schedule: StageSchedule
+    report: Report
+    weights: Weights = AS_IT_IS
+    """Factors on what each cost counts."""
+
+    def __post_init__(self) -> None:
+        self.R, self.p, self.scale = self.problem.R.copy(), self.problem.p.copy(), self.problem.scale.copy()
+
+    @property
+    def layout(self) -> Problem:
+        """The objects where they are now."""
+        return self.problem.with_poses(self.R, self.p, self.scale)
 
 
 Report = Callable[[str, int, State, Mapping[str, float]], None]
@@ -106,18 +117,13 @@ class Edges:
         return to_child, to_supporter
 
 
-def orientation_stage(
-    problem: Problem, state: State, schedule: StageSchedule, report: Report, *, weights: Weights = AS_IT_IS
-) -> None:
-    """Stage 1: turn objects until contact faces are parallel to their supports. 3 e_align + e_sem.
+NEAR_M = 0.1
+"""Boxes with smaller gaps are watched."""
 
-    Args:
-        problem: the layout as observed, with its supports.
-        state: the layout; changed in place.
-        schedule: of the steps.
-        report: called at every step; may raise to cancel.
-        weights: factors on what each cost counts.
-    """
+
+def orientation_stage(state: State) -> None:
+    """Stage 1: turn objects until contact faces are parallel to their supports. 3 e_align + e_sem."""
+    problem, schedule, weights = state.problem, state.schedule, state.weights
     edges = Edges.of(problem)
     to_child, to_supporter = edges.scatter(problem.count)
     front = state.R[:, :, 0].copy()
@@ -137,23 +143,14 @@ def orientation_stage(
         velocity = schedule.momentum * velocity + gradient * free
         state.R = np.matmul(rotation_from_vector(-schedule.rate * rate * velocity), state.R)
         terms = {"align": 3.0 * weights.align * value, "heading": weights.heading * cost}
-        report("orientation", step, state, terms)
+        state.report("orientation", step, state, terms)
     state.R = orthonormal(state.R)
 
 
-def placement_stage(
-    problem: Problem, state: State, schedule: StageSchedule, report: Report, *, weights: Weights = AS_IT_IS
-) -> None:
-    """Stage 2: move objects onto their supports, keeping their neighbours' relative positions. 5 e_place + e_rel.
-
-    Args:
-        problem: the layout as observed, with its supports.
-        state: the layout; changed in place.
-        schedule: of the steps.
-        report: called at every step; may raise to cancel.
-        weights: factors on what each cost counts.
-    """
-    cost = PlacementCost.of(problem, state)
+def placement_stage(state: State) -> None:
+    """Stage 2: move objects onto their supports, keeping their neighbours' relative positions. 5 e_place + e_rel."""
+    problem, schedule, weights = state.problem, state.schedule, state.weights
+    cost = PlacementCost.of(state)
     links = gradients.incidence(problem.relations, problem.count)
     velocity, start = np.zeros((problem.count, 3)), state.p.copy()
     free = problem.free.astype(np.float64)[:, None]
@@ -164,23 +161,15 @@ def placement_stage(
         velocity = schedule.momentum * velocity + slope * free
         state.p = state.p - schedule.rate * rate * velocity
         terms = {"place": 5.0 * weights.place * value, "neighbours": weights.neighbours * distance}
-        report("placement", step, state, terms)
+        state.report("placement", step, state, terms)
 
 
-def space_stage(
-    problem: Problem, state: State, schedule: StageSchedule, report: Report, *, weights: Weights = AS_IT_IS
-) -> None:
+def space_stage(state: State) -> None:
     """Stage 3: move and shrink objects until they are inside their supporting volumes. e_vol.
 
     A supporter's own pose bounds the volume but is not moved by it.
-
-    Args:
-        problem: the layout as observed, with its supports.
-        state: the layout; changed in place.
-        schedule: of the steps.
-        report: called at every step; may raise to cancel.
-        weights: factors on what each cost counts.
     """
+    problem, schedule, weights = state.problem, state.schedule, state.weights
     volumes = Volumes.of(problem)
     supported = volumes.supported
     if not len(supported):
@@ -204,39 +193,23 @@ def space_stage(
         v_s = schedule.momentum * v_s + weights.volume * to_scale * free
         state.p[supported] = p - schedule.rate * rate * v_p
         state.scale[supported] = np.maximum(scale - schedule.scale_rate * rate * v_s, 0.05)
-        report("space", step, state, {"volume": weights.volume * value})
+        state.report("space", step, state, {"volume": weights.volume * value})
 
 
-def refinement_stage(
-    problem: Problem,
-    state: State,
-    schedule: StageSchedule,
-    report: Report,
-    *,
-    weights: Weights = AS_IT_IS,
-    near_m: float = 0.1,
-) -> None:
-    """Stage 4: placement again, and no boxes overlapping. 5 e_place + e_col; walls are obstacles.
-
-    Args:
-        problem: the layout as observed, with its supports.
-        state: the layout; changed in place.
-        schedule: of the steps.
-        report: called at every step; may raise to cancel.
-        weights: factors on what each cost counts.
-        near_m: gap of boxes that are watched.
-    """
-    cost = PlacementCost.of(problem, state)
-    R, centre, size, apart = with_walls(problem, state)
+def refinement_stage(state: State) -> None:
+    """Stage 4: placement again, and no boxes overlapping. 5 e_place + e_col; walls are obstacles."""
+    problem, schedule, weights = state.problem, state.schedule, state.weights
+    cost = PlacementCost.of(state)
+    R, centre, size, apart = with_walls(state)
     n = problem.count
     velocity = np.zeros((n, 3))
     free = problem.free.astype(np.float64)[:, None]
     seen = centre[:n] + np.inf
     for step, rate in enumerate(schedule.rates()):
         centre[:n] = state.p
-        # Pairs further apart than near_m cannot touch before something has moved by half of that.
-        if step % 10 == 0 and np.abs(state.p - seen).max(initial=0.0) > near_m / 4:
-            pairs = gradients.candidate_pairs(R, centre, size, apart, near_m)
+        # Pairs further apart than NEAR_M cannot touch before something has moved by half of that.
+        if step % 10 == 0 and np.abs(state.p - seen).max(initial=0.0) > NEAR_M / 4:
+            pairs = gradients.candidate_pairs(R, centre, size, apart, NEAR_M)
             boxes, links = gradients.BoxPairs.of(R, size, pairs, walls_from=n), gradients.incidence(pairs, len(centre))
             seen = state.p.copy()
         value, gradient = cost.value_and_gradient(state.p)
@@ -245,7 +218,7 @@ def refinement_stage(
         velocity = schedule.momentum * velocity + slope * free
         state.p = state.p - schedule.rate * rate * velocity
         terms = {"place": 5.0 * weights.place * value, "collision": weights.collision * overlap}
-        report("refinement", step, state, terms)
+        state.report("refinement", step, state, terms)
 
 
 @dataclass(frozen=True, eq=False)
@@ -259,8 +232,9 @@ class PlacementCost:
     scatter: Float[np.ndarray, "n e"]
 
     @classmethod
-    def of(cls, problem: Problem, state: State) -> PlacementCost:
+    def of(cls, state: State) -> PlacementCost:
         """The cost at the present rotations and scales."""
+        problem = state.problem
         edges = Edges.of(problem)
         R, _, scale = edges.owners(state)
         size = problem.shape_size[edges.child] * state.scale[edges.child]
@@ -279,8 +253,9 @@ class PlacementCost:
         return value, self.scatter @ ((np.sign(distance) * self.weight)[:, None] * self.slope)
 
 
-def with_walls(problem: Problem, state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def with_walls(state: State) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Boxes of objects and of walls, and which pairs may collide."""
+    problem = state.problem
     n, walls = problem.count, problem.walls
     R = np.concatenate([state.R, np.array([_wall_frame(w.normal) for w in walls]).reshape(-1, 3, 3)])
     centres, sizes = [], []

@@ -36,9 +36,7 @@ class Freedom:
     def steps(self, move_m: float, share: float) -> Float[np.ndarray, "k f"]:
         """No change, then one step either way for every freedom, and for all extents together.
 
-        Args:
-            move_m: length of a step along a direction.
-            share: by which an extent changes in a step; a turn is in proportion.
+        A turn is in proportion to the share by which an extent changes.
         """
         extents, turn = len(self.extents), self.settings.turn_rad * share
         length = [*len(self.directions) * [move_m], *extents * [share], *int(self.turns) * [turn]]
@@ -193,35 +191,24 @@ class RoomLeft:
     @classmethod
     def of(cls, problem: Problem) -> RoomLeft:
         """What is left around the objects of a settled layout."""
-        poses = problem.R, problem.p, problem.scale
-        errors = np.maximum(support_errors(problem, *poses) + ROUNDING_M, USUAL_ERRORS)
-        return cls(problem, errors, part_overlaps(problem, *poses, supporters=True))
+        errors = np.maximum(support_errors(problem) + ROUNDING_M, USUAL_ERRORS)
+        return cls(problem, errors, part_overlaps(problem, supporters=True))
 
-    def allows(
-        self, i: int, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
-    ) -> bool:
-        """Whether object i may be where it is among all others.
-
-        Args:
-            i: index of the object.
-            R: rotations, world from object.
-            p: centres, world, metres.
-            scale: along the axes of each object.
-        """
-        affected = [i, *np.flatnonzero(self.problem.parent == i)]
-        worse = support_errors(self.problem, R, p, scale)[affected] > self.support_errors[affected]
-        if worse.any() or self._enters_wall(i, R, p, scale):
+    def allows(self, i: int, now: Problem) -> bool:
+        """Whether object i may be where it is now among all others."""
+        affected = [i, *np.flatnonzero(now.parent == i)]
+        worse = support_errors(now)[affected] > self.support_errors[affected]
+        if worse.any() or self._enters_wall(i, now):
             return False
-        depths = part_overlaps(self.problem, R, p, scale, only=i, supporters=True)
+        depths = part_overlaps(now, only=i, supporters=True)
         return all(depth <= self.overlaps_m.get(pair, 0.0) + ROUNDING_M for pair, depth in depths.items())
 
-    def _enters_wall(self, i: int, R: np.ndarray, p: np.ndarray, scale: np.ndarray) -> bool:
+    def _enters_wall(self, i: int, now: Problem) -> bool:
         """True if the object is farther behind a wall than it was."""
-        problem, local = self.problem, box_corners(self.problem.shape_size[i])
-        was = problem.p[i] + (local * problem.scale[i]) @ problem.R[i].T
-        now = p[i] + (local * scale[i]) @ R[i].T
-        for wall in problem.walls_near(i):
-            before, after = (float((corners @ wall.normal).min()) - wall.offset for corners in (was, now))
+        local = box_corners(now.shape_size[i])
+        corners = [of.p[i] + (local * of.scale[i]) @ of.R[i].T for of in (self.problem, now)]
+        for wall in self.problem.walls_near(i):
+            before, after = (float((points @ wall.normal).min()) - wall.offset for points in corners)
             if after < min(before, 0.0) - ROUNDING_M:
                 return True
         return False

@@ -84,14 +84,9 @@ class PosedPicture:
         return cls(grid, wanted, casters, depth, settings)
 
     def __post_init__(self) -> None:
-        self._mask_pixels = self._counts(self.wanted)
+        self.mask_pixels = self._counts(self.wanted)
         shown = _nearest(self.depth_m, np.arange(len(self.casters)))[1]
         self._pixels, self._right = self._counts(shown), self._counts(shown[shown == self.wanted])
-
-    @property
-    def mask_pixels(self) -> Int[np.ndarray, " n"]:
-        """Pixels of each object's mask."""
-        return self._mask_pixels
 
     def look(self, i: int, poses: PoseBatch) -> TriedPoses | None:
         """What is seen of object i in several poses near its present one, which is the first; None where nothing is."""

@@ -63,7 +63,7 @@ class Search:
         before = poses[np.array([i])]
         for tried in self._better(poses, i, share, seen):
             _set(poses, i, tried.poses, tried.number)
-            if room.allows(i, poses.R, poses.position, poses.scale):
+            if room.allows(i, self.problem.with_poses(poses.R, poses.position, poses.scale)):
                 self.picture.replace(tried.look, tried.number)
                 return True
         _set(poses, i, before, 0)

@@ -52,14 +52,10 @@ class MaskRefinement:
         objects: Sequence[DetectedObject],
         progress: Progress,
     ) -> tuple[Scene, LayoutReport]:
-        """The scene in poses that cover the masks better; see `protocols.RefinementStage`.
+        """The scene in poses that cover the masks better.
 
         Args:
-            scene: after its layout.
-            report: of the layout.
-            observed: the scene before it.
-            objects: what was found in the photo, with masks.
-            progress: reports and cancellation.
+            scene, report, observed, objects, progress: as documented in `protocols.RefinementStage`.
         """
         begun = time.perf_counter()
         detected = {o.id: o for o in objects}
@@ -78,15 +74,10 @@ class MaskRefinement:
         trust = np.array([0.0 if o is None else _trust(o, self.settings.outlined) for o in detected_objects])
         sized = _belong_to_sets(observed, problem.ids)
         poses = Search(problem, picture, priors, boxes, trust, sized, self.settings).poses(progress)
-        as_observed = replace(
-            problem,
-            R=np.array([pose.R_world_object for pose in seen]),
-            p=np.array([pose.position for pose in seen]),
-            scale=np.array([pose.scale for pose in seen]),
-        )
-        seconds = report.seconds + time.perf_counter() - begun
-        refined = edits.place(scene, problem.poses(poses.R, poses.position, poses.scale))
-        return refined, _update_report(replace(report, seconds=seconds), as_observed, scene.camera, poses)
+        as_observed = problem.with_poses_of(observed)
+        now = problem.with_poses(poses.R, poses.position, poses.scale)
+        report = replace(report, seconds=report.seconds + time.perf_counter() - begun)
+        return edits.place(scene, now.free_poses), _update_report(report, as_observed, now, scene.camera)
 
     def _expected(self, seen: Pose, settled_scale: Float[np.ndarray, "3"]) -> Pose:
         """The observed pose; of measured objects as high as the layout made them, which knows what was hidden below."""
@@ -118,13 +109,13 @@ def _belong_to_sets(observed: Scene, ids: Sequence[str]) -> list[bool]:
     return [alike[sizes[name]] > 1 for name in ids]
 
 
-def _update_report(report: LayoutReport, observed: Problem, camera: Camera, poses: PoseBatch) -> LayoutReport:
+def _update_report(report: LayoutReport, observed: Problem, now: Problem, camera: Camera) -> LayoutReport:
     """The report of a layout whose objects are in other poses now."""
-    apart = disagreements(observed, camera, poses.R, poses.position, poses.scale)
+    apart = disagreements(observed, now, camera)
     outdated = set(map(disagreement_in_words, report.disagreements))
     return replace(
         report,
-        after=measure(observed, poses.R, poses.position, poses.scale),
+        after=measure(observed, now),
         reasons=(*(r for r in report.reasons if r not in outdated), *map(disagreement_in_words, apart)),
         disagreements=apart,
     )

@@ -64,12 +64,7 @@ def similarities(
 
 
 def cyclic_matches(similarity: Float32[np.ndarray, "v q p"], query_patches: Int[np.ndarray, " q"]) -> Matches:
-    """The accepted matches of every view.
-
-    Args:
-        similarity: From `similarities`.
-        query_patches: Number of each of the picture's foreground patches.
-    """
+    """The accepted matches of every view."""
     views, count, _ = similarity.shape
     if count == 0:
         none = np.zeros((views, 0), dtype=int)

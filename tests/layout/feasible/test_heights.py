@@ -9,7 +9,7 @@ from diorama_core.layout.feasible.heights import joint_heights
 from diorama_core.layout.feasible.photo_observations import photo_observations
 from diorama_core.layout.problem.problem import Problem, build_problem
 from diorama_core.layout.settings import LAYOUT
-from tests.layout.feasible.test_photo_observations import looking_north, outline
+from tests.layout.feasible.test_photo_observations import boxed, looking_north
 from tests.layout.small_rooms import Room
 
 BOX, CUP = "box_24", "cup_21"
@@ -24,8 +24,7 @@ def problems_of(room: Room, cups: tuple[float, ...], *, box_foot_m: float = 0.0)
         room.put(CUP, at, on=box, id=f"cup_{k}")
     camera = looking_north()
     scene = room.scene(camera=camera)
-    boxed = tuple(replace(o, box_px=tuple(outline(scene, o.id))) for o in scene.objects)
-    problem = build_problem(replace(scene, objects=boxed), room.library)
+    problem = build_problem(boxed(scene), room.library)
     seen = photo_observations(problem, camera, depth_weight=1.0, measured=True)
     return problem, joint_heights(problem, seen)[0]
 

@@ -22,7 +22,7 @@ def dragged(scene: Scene, object_id: str, pose: Pose) -> Scene:
 
 def overlap_m(scene: Scene) -> float:
     problem = build_problem(scene, LIBRARY)
-    return max(part_overlaps(problem, problem.R, problem.p, problem.scale).values(), default=0.0)
+    return max(part_overlaps(problem).values(), default=0.0)
 
 
 def test_follows_the_hand_and_drops_to_the_floor(room: Room) -> None:

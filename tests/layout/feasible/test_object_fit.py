@@ -23,7 +23,7 @@ def test_derivatives_are_the_slopes(x: float, y: float, yaw: float, state: list[
     room.put("box_24", (x, y, 0.3), yaw=yaw)
     scene = room.scene(camera=looking_north())
     pose = scene.objects[0].pose
-    fit = observations_of(scene).fit(
+    fit = observations_of(scene)._object_fit(
         0, pose.R_world_object, pose.position, pose.scale, np.eye(3)[:, :2], np.array([0.0, 0.0, -1.0])
     )
     assert isinstance(fit, ObjectFit)

@@ -37,6 +37,11 @@ def outline(scene: Scene, name: str) -> np.ndarray:
     return np.array([*flat.min(axis=0), *flat.max(axis=0)])
 
 
+def boxed(scene: Scene) -> Scene:
+    """The scene with the photo's boxes where its objects are."""
+    return replace(scene, objects=tuple(replace(o, box_px=tuple(outline(scene, o.id))) for o in scene.objects))
+
+
 def solve(scene: Scene, **settings) -> Scene:
     return FeasibleRecipe(LIBRARY, **settings).optimise(scene, Progress())[0]
 
@@ -121,8 +126,7 @@ def test_a_side_behind_a_nearer_object_is_a_least_bound(room: Room) -> None:
     cabinet = room.put("cabinet_10", (0.0, 1.5, 0.4), yaw=-np.pi / 2)
     box = room.put("box_24", (0.0, 0.4, 0.15), scale=(1.0, 3.0, 1.0))
     scene = room.scene(camera=looking_north(4.0))
-    seen = replace(scene, objects=tuple(replace(o, box_px=tuple(outline(scene, o.id))) for o in scene.objects))
-    problem = build_problem(seen, LIBRARY)
+    problem = build_problem(boxed(scene), LIBRARY)
     hidden = photo_observations(problem, looking_north(4.0), depth_weight=1.0).hidden
     assert hidden[problem.ids.index(cabinet)].tolist() == [False, False, False, True]
     assert not hidden[problem.ids.index(box)].any()
@@ -135,13 +139,13 @@ def test_what_stands_on_an_object_does_not_hide_its_top(room: Room) -> None:
     box = room.put("box_24", (-0.1, 0, top + high / 2), on=table, scale=(1, 2.0 / wide, 1))
     camera = looking_north(height_m=0.6)
     scene = room.scene(camera=camera)
-    boxed = tuple(replace(o, box_px=tuple(outline(scene, o.id))) for o in scene.objects)
-    assert boxed[1].box_px[3] > boxed[0].box_px[1]
+    under, load = boxed(scene).objects
+    assert load.box_px[3] > under.box_px[1]
     for edges, hidden in (
         (scene.supports, False),
         ((scene.supports[0], replace(scene.supports[1], parent="floor")), True),
     ):
-        problem = build_problem(replace(scene, objects=boxed, supports=edges), LIBRARY)
+        problem = build_problem(replace(boxed(scene), supports=edges), LIBRARY)
         nearer = replace(problem, p=problem.p - np.outer(np.array(problem.ids) == box, [0, 0.2, 0]))
         seen = photo_observations(nearer, camera, depth_weight=1.0)
         assert seen.hidden[problem.ids.index(table), 1] == hidden
@@ -189,8 +193,7 @@ def test_a_measured_top_stays_where_the_foot_has_to_come_down(room: Room) -> Non
     table = room.put("table_0", (0.0, 1.0, 0.43))
     scene = room.scene(camera=looking_north())
     seen = scene.object(table)
-    boxed = replace(seen, box_px=tuple(outline(scene, table)))
-    stood = solve(replace(scene, objects=(boxed,)), depth_weight=1.0, depth_measured=True).object(table)
+    stood = solve(boxed(scene), depth_weight=1.0, depth_measured=True).object(table)
     assert stood.corners_world[:, 2].min() == pytest.approx(0.0, abs=1e-9)
     assert stood.corners_world[:, 2].max() == pytest.approx(seen.corners_world[:, 2].max(), abs=0.01)
 

@@ -14,7 +14,7 @@ from diorama_core.layout.feasible.separate import Program, Separation
 from diorama_core.layout.recipes import NAMES, recipe
 from diorama_core.layout.settings import LAYOUT
 from diorama_core.progress import CancelToken, Progress
-from diorama_core.scene.types import Architecture, Camera, Intrinsics, Plane, Pose, Scene, Support, yaw_rotation
+from diorama_core.scene.types import Architecture, Plane, Pose, Scene, Support, yaw_rotation
 from diorama_core.synthesis.layout_rooms import BoxLibrary, GeneratedRoom, box_library, generate_room, perturb_graph
 from tests.layout.feasible.test_photo_observations import looking_north
 from tests.layout.small_rooms import Room, tilted
@@ -251,10 +251,7 @@ def test_a_cycle_is_named(room: Room) -> None:
 
 def test_what_must_sink_slides_along_its_viewing_ray(room: Room) -> None:
     box = room.put("box_24", (0.0, 1.0, 0.2))
-    T = np.eye(4)
-    T[:3, :3] = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
-    T[:3, 3] = [0.0, -2.4, 1.5]
-    camera = Camera(Intrinsics(640, 480, 500, 500, 320, 240), T)
+    camera = looking_north()
     scene = room.scene(camera=camera)
     with_photo = solve(scene)[0].object(box)
     straight_down = solve(replace(scene, camera=None))[0].object(box)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -12,7 +10,7 @@ from diorama_core.layout.settings import LAYOUT
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Architecture, Plane, Scene
 from diorama_core.synthesis.layout_rooms import box_library
-from tests.layout.feasible.test_photo_observations import looking_north, outline
+from tests.layout.feasible.test_photo_observations import boxed, looking_north, outline
 from tests.layout.small_rooms import Room
 
 LIBRARY = box_library()
@@ -51,9 +49,7 @@ def through_the_wall(room: Room, *, x: float = 0.0, load_m: float | None = None)
         front = 2.5 - depth + 0.06
         size = LIBRARY.shape("books_18").size_m
         room.put("books_18", (x, front + size[0] / 2 - load_m, 1.3), on=shelf, yaw=-np.pi / 2)
-    scene = room.scene(camera=looking_north(5.0), architecture=planes)
-    boxed = tuple(replace(o, box_px=tuple(outline(scene, o.id))) for o in scene.objects)
-    scene = replace(scene, objects=boxed)
+    scene = boxed(room.scene(camera=looking_north(5.0), architecture=planes))
     recipe = FeasibleRecipe(LIBRARY, depth_measured=True, depth_weight=1.0)
     return scene, recipe.optimise(scene, Progress())[0], shelf
 

@@ -15,7 +15,7 @@ from diorama_core.layout.problem.problem import build_problem
 from diorama_core.layout.settings import LAYOUT
 from diorama_core.progress import Progress
 from diorama_core.scene.types import Pose, box_corners
-from tests.layout.feasible.test_photo_observations import looking_north, outline
+from tests.layout.feasible.test_photo_observations import boxed, looking_north, outline
 from tests.layout.small_rooms import Room
 
 BOX = "box_24"
@@ -87,12 +87,12 @@ def test_an_end_that_is_outside_the_picture_does_not_hold_an_object_back(room: R
     size = room.library.shape("cabinet_10").size_m
     at = (2.0, 2.5 - size[0] / 2 - 0.2, 0.4)
     cabinet = room.put("cabinet_10", at, yaw=-np.pi / 2, scale=(1.0, 1.5, 1.0), adheres_to=("wall_2",))
-    scene = room.scene(camera=looking_north())
-    boxed = replace(scene.object(cabinet), box_px=tuple(outline(scene, cabinet)))
-    scene = replace(scene, objects=(boxed,))
+    scene = boxed(room.scene(camera=looking_north()))
     points = visible_points(scene, room.library)[cabinet]
     moved, _ = FeasibleRecipe(room.library).optimise(scene, Progress())
     before = scene.camera.project(scene.object(cabinet).pose.apply(points))
     after = scene.camera.project(moved.object(cabinet).pose.apply(points))
-    pushed = scene.camera.project(replace(boxed.pose, position=np.array([2.0, at[1] + 0.2, 0.4])).apply(points))
+    pushed = scene.camera.project(
+        replace(scene.object(cabinet).pose, position=np.array([2.0, at[1] + 0.2, 0.4])).apply(points)
+    )
     assert np.abs(after - before).mean() < 0.6 * np.abs(pushed - before).mean()

@@ -66,7 +66,7 @@ def test_empty_and_single_scenes(recipe, room: Room) -> None:
 
 def test_the_placement_cost_of_the_inner_loop_is_e_place() -> None:
     problem = build_problem(generate_room(6, 12).observed, LIBRARY)
-    state = staged.State(problem.R.copy(), problem.p.copy(), problem.scale.copy())
+    state = staged.State(problem, StageSchedule(), lambda *_: None)
     edges = staged.Edges.of(problem)
     owner_R, owner_p, owner_s = edges.owners(state)
     p = torch.tensor(state.p, requires_grad=True)
@@ -77,7 +77,7 @@ def test_the_placement_cost_of_the_inner_loop_is_e_place() -> None:
     point = base + torch.tensor(np.einsum("eij,ej->ei", owner_R, edges.point * owner_s))
     normal = torch.tensor(np.einsum("eij,ej->ei", owner_R, edges.normal))
     value = costs.e_place(centre, point, normal)
-    ours, slope = staged.PlacementCost.of(problem, state).value_and_gradient(state.p)
+    ours, slope = staged.PlacementCost.of(state).value_and_gradient(state.p)
     assert ours == pytest.approx(float(value.detach()))
     assert np.allclose(slope, torch.autograd.grad(value, p)[0].numpy())
 
@@ -92,11 +92,11 @@ def test_torch_threads_are_given_back() -> None:
 def test_the_report_names_every_cost_and_exact_structure_has_none() -> None:
     room = generate_room(7, 12)
     problem = build_problem(room.truth, LIBRARY)
-    figures = measure(problem, problem.R, problem.p, problem.scale)
+    figures = measure(problem, problem)
     for name in ("e_align", "e_sem", "e_place", "e_rel", "e_vol"):
         assert figures[name] == pytest.approx(0.0, abs=1e-6), name
     seen = build_problem(room.observed, LIBRARY)
-    noisy = measure(seen, seen.R, seen.p, seen.scale)
+    noisy = measure(seen, seen)
     assert noisy["e_align"] > 0.1
     assert noisy["e_place"] > 0.1
     assert noisy["e_sem"] == pytest.approx(0.0, abs=1e-9)

@@ -120,7 +120,7 @@ OBSERVED = Pose.upright((0.0, 2.0, 0.5), 0.0, (1.0, 1.2, 0.8))
 
 
 def cost(pose: Pose, precision: Precision) -> float:
-    batch = PoseBatch(pose.R_world_object[None], pose.position[None], np.array(pose.scale)[None])
+    batch = PoseBatch.single(pose)
     return float(PosePrior(EYE, OBSERVED, precision).cost(batch)[0])
 
 
@@ -183,7 +183,7 @@ def allowed(problem: Problem, name: str, move: tuple[float, float, float], grown
     i, p, scale = problem.ids.index(name), problem.p.copy(), problem.scale.copy()
     p[i] += move
     scale[i] *= grown
-    return RoomLeft.of(problem).allows(i, problem.R, p, scale)
+    return RoomLeft.of(problem).allows(i, problem.with_poses(problem.R, p, scale))
 
 
 def test_a_settled_layout_is_allowed_and_so_is_a_move_into_free_space(room: Room) -> None:
@@ -228,7 +228,7 @@ def test_what_is_on_a_lower_board_overlaps_the_sides_and_not_what_is_beside_it(r
     problem = settled(room)
     through, p = problem.ids.index("cup"), problem.p.copy()
     p[through, 1] += 0.5 * room.library.shape("bookshelf_6").size_m[1]
-    poses = problem.R, p, problem.scale
-    assert part_overlaps(problem, *poses, only=through, supporters=True)[0, 1] > 0.01
-    assert not part_overlaps(problem, *poses, only=through)
-    assert not part_overlaps(problem, problem.R, problem.p, problem.scale, supporters=True)
+    moved = replace(problem, p=p)
+    assert part_overlaps(moved, only=through, supporters=True)[0, 1] > 0.01
+    assert not part_overlaps(moved, only=through)
+    assert not part_overlaps(problem, supporters=True)

@@ -30,15 +30,17 @@ def picture_of(scene: Scene, masks: list[np.ndarray], room: Room) -> tuple[Posed
     return PosedPicture.of(grid, grid.labels(masks), casters, batch), batch
 
 
+def moved(poses: PoseBatch, i: int, moves: np.ndarray) -> PoseBatch:
+    """One of the poses, moved so."""
+    count = len(moves)
+    R, scale = (np.repeat(of[i][None], count, axis=0) for of in (poses.R, poses.scale))
+    return PoseBatch(R, poses.position[i] + moves, scale)
+
+
 def test_masks_of_the_poses_themselves_are_met_and_others_less(room: Room) -> None:
     scene = crowded(room)
     picture, poses = picture_of(scene, [o.mask for o in seen_objects(scene, room.library)], room)
-    beside = PoseBatch(
-        np.repeat(poses.R[:1], 2, axis=0),
-        poses.position[0] + np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]]),
-        np.repeat(poses.scale[:1], 2, axis=0),
-    )
-    look = picture.look(0, beside)
+    look = picture.look(0, moved(poses, 0, np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]])))
     assert look is not None
     assert look.agreement[0] == pytest.approx(np.ones(3))
     assert look.agreement[1, 0] < 0.95
@@ -51,11 +53,7 @@ def test_a_look_counts_what_a_new_picture_does(room: Room) -> None:
     for turn in range(12):
         i = turn % len(scene.objects)
         moves = np.concatenate([np.zeros((1, 3)), 0.15 * rng.standard_normal((3, 3))])
-        tried = PoseBatch(
-            np.repeat(current.R[i][None], 4, axis=0),
-            current.position[i] + moves,
-            np.repeat(current.scale[i][None], 4, axis=0),
-        )
+        tried = moved(current, i, moves)
         look = picture.look(i, tried)
         assert look is not None
         picture.replace(look, 1 + turn % 3)
@@ -79,14 +77,7 @@ def test_small_moves_are_seen_as_exactly_as_large_ones(room: Room) -> None:
     picture, poses = picture_of(scene, [o.mask for o in seen_objects(scene, room.library)], room)
     for i in range(3):
         moves = np.concatenate([np.zeros((1, 3)), 0.02 * np.eye(3), -0.02 * np.eye(3)])
-        near, far = (
-            PoseBatch(
-                np.repeat(poses.R[i][None], len(moves) + more, axis=0),
-                poses.position[i] + np.concatenate([moves, np.full((more, 3), 1.0)]),
-                np.repeat(poses.scale[i][None], len(moves) + more, axis=0),
-            )
-            for more in (0, 1)
-        )
+        near, far = (moved(poses, i, np.concatenate([moves, np.full((more, 3), 1.0)])) for more in (0, 1))
         look, whole = picture.look(i, near), picture.look(i, far)  # the far pose has every ray cast
         assert look is not None
         assert whole is not None
@@ -96,7 +87,4 @@ def test_small_moves_are_seen_as_exactly_as_large_ones(room: Room) -> None:
 def test_what_is_outside_the_photo_is_not_looked_at(room: Room) -> None:
     scene = crowded(room)
     picture, poses = picture_of(scene, [o.mask for o in seen_objects(scene, room.library)], room)
-    assert (
-        picture.look(0, PoseBatch(poses.R[:1], poses.position[:1] - np.array([[0.0, 9.0, 0.0]]), poses.scale[:1]))
-        is None
-    )
+    assert picture.look(0, moved(poses, 0, np.array([[0.0, -9.0, 0.0]]))) is None
