@@ -10,7 +10,6 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 from jaxtyping import Float32
 
-from diorama_core.architecture.acdc import AcdcRoom
 from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.architecture.rac.stage import RenderAndCompareRoom
 from diorama_core.artefacts import Inputs
@@ -25,6 +24,7 @@ from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import ArchitectureStage
+from diorama_core.provenance import RoomMethod
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.truth import TruthView
 
@@ -100,8 +100,8 @@ def run(
             ("RaC, true masks, depth with 2 % noise", noisy, RenderAndCompareRoom()),
             ("RaC without refinement, true masks and depth", view.inputs, RenderAndCompareRoom(refine=False)),
             ("RaC without refinement, true masks, depth with 2 % noise", noisy, RenderAndCompareRoom(refine=False)),
-            ("ACDC, true masks and depth", view.inputs, AcdcRoom()),
-            ("ACDC, true masks, depth with 2 % noise", noisy, AcdcRoom()),
+            ("ACDC, true masks and depth", view.inputs, PlainRecon(method=RoomMethod.ACDC)),
+            ("ACDC, true masks, depth with 2 % noise", noisy, PlainRecon(method=RoomMethod.ACDC)),
             ("picture and boxes", photo_only(view), None),
         )
         for name, inputs, stage in rows:
