@@ -86,13 +86,7 @@ def find_walls(surface: MeasuredSurface, top_m: float) -> list[WallCandidate]:
 
 
 def same_wall(surface: MeasuredSurface, minor: WallCandidate, major: WallCandidate) -> bool:
-    """Whether the smaller candidate's points lie on the larger one too.
-
-    Args:
-        surface: the measured points.
-        minor: the smaller candidate.
-        major: the larger one.
-    """
+    """Whether the smaller candidate's points lie on the larger one too."""
     near = np.abs(surface.points[minor.inliers, :2] @ major.normal - major.offset)
     near = near < tolerance_m(surface.depth_m[minor.inliers])
     return bool(near.mean() > SETTINGS.same_share and minor.normal @ major.normal > np.cos(APART_RAD))
