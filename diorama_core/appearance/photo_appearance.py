@@ -128,15 +128,7 @@ def _as_bright(
     scene: Scene,
     library: ShapeLibrary,
 ) -> PhotoAppearance:
-    """The materials as bright as the photo shows them in the scene's light, part of which they reflect themselves.
-
-    Args:
-        read: The materials.
-        rgb: The photo.
-        read_from: Pixels that show the materials of each object.
-        scene: As in `photo_appearance`.
-        library: Where its shapes are.
-    """
+    """The materials as bright as the photo shows them in the scene's light, part of which they reflect themselves."""
     visible = {key: pixels for key, pixels in read_from.items() if key in read.materials}
     for _ in range(SETTINGS.brightness_rounds):
         gains = brightness_gains(rgb, visible, read.apply(scene), read.pictures, library)
@@ -255,11 +247,6 @@ def hiding(
     """Where other objects stand before one: smaller ones wherever they are, larger ones beside its own mask.
 
     Without the larger ones, which may as well lie below or stand behind it, it is where something surely does.
-
-    Args:
-        detected: The object.
-        objects: What was found in the photo, with masks.
-        smaller_only: Whether larger ones are left out.
     """
     hidden, area = np.zeros(detected.mask.shape, dtype=bool), detected.pixels
     for other in objects:

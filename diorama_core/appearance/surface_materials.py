@@ -166,13 +166,7 @@ def slot_pixels(
 def whole_pixels(
     view: SurfaceView, slots: tuple[Slot, ...], visible: Bool[np.ndarray, "h w"]
 ) -> tuple[SlotPixels, ...]:
-    """All that is seen of a small thing as its main slot, of one colour; none where that is hardly anything.
-
-    Args:
-        view: The shape in its pose.
-        slots: Its slots.
-        visible: The object's inner pixels, without what stands before it.
-    """
+    """All that is seen of a small thing as its main slot, of one colour; none where that is hardly anything."""
     seen = view.crop(visible) & (view.slot >= 0)
     if np.count_nonzero(seen) * view.step**2 < MIN_OF_WHOLE:
         return ()
@@ -221,13 +215,7 @@ def _own_colours(
 def _is_before_all(
     alike: Bool[np.ndarray, "gh gw"], mine: Bool[np.ndarray, "gh gw"], foreign: Sequence[Bool[np.ndarray, "gh gw"]]
 ) -> bool:
-    """Whether a slot's colour is of something before the object: on it in part, and as much on slots of other colours.
-
-    Args:
-        alike: Pixels of about its colour.
-        mine: The slot.
-        foreign: The slots of other colours.
-    """
+    """Whether a slot's colour is of what is before the object: on it in part, and as much on slots of other colours."""
     share = _share(alike, mine)
     if share >= SETTINGS.mostly or not foreign:
         return False
@@ -291,13 +279,7 @@ def _is_near(difference: np.ndarray) -> np.ndarray:
 
 
 def shade_of(view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"]) -> Shade:
-    """How bright the slot is at each of its normals.
-
-    Args:
-        view: The shape in its pose.
-        pixels: The slot's.
-        rgb: The photo.
-    """
+    """How bright the slot is at each of its normals."""
     linear = luminance(srgb_to_linear(view.crop(rgb)[pixels.near] / 255.0))
     label, count = cells_of(np.round(view.normals_world[pixels.near] / SETTINGS.normal_cell))
     of = [label == k for k in np.flatnonzero(count >= SETTINGS.min_face_pixels)]
@@ -338,14 +320,9 @@ def appearance_of(
         tile_m = pixels.slot.tile_m if pixels.slot.role in {*WOVEN_ROLES, PRINTED} else None
         if weave is None or tile_m is None or not _is_plain(view, pixels, rgb, weave, tile_m):
             return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0, roughness)
-        plain = np.rint(255 * np.clip([red, green, blue], 0, 1)).astype(np.uint8)
-        return SlotAppearance(
-            pixels.slot,
-            (red, green, blue),
-            np.tile(plain, (SETTINGS.plain_px, SETTINGS.plain_px, 1)),
-            tile_m,
-            roughness,
-        )
+        colour = np.rint(255 * np.clip([red, green, blue], 0, 1)).astype(np.uint8)
+        plain = np.tile(colour, (SETTINGS.plain_px, SETTINGS.plain_px, 1))
+        return SlotAppearance(pixels.slot, (red, green, blue), plain, tile_m, roughness)
     texture = tileable(_scale_to_albedo(example, albedo))
     return SlotAppearance(pixels.slot, (red, green, blue), texture, example.texel_m * texture.shape[0], roughness)
 
