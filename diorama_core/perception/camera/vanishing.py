@@ -94,13 +94,7 @@ class Lines:
     def of(
         cls, segments_px: Float[np.ndarray, "n 4"], intrinsics: Intrinsics, settings: LineCameraSettings = SETTINGS
     ) -> Lines:
-        """Segments in pixels seen by a camera; only its centre and the proportion of its focal lengths are used.
-
-        Args:
-            segments_px: x1, y1, x2, y2 of every segment.
-            intrinsics: of the picture.
-            settings: of the line camera.
-        """
+        """Segments in pixels seen by a camera; only its centre and the proportion of its focal lengths are used."""
         side = max(intrinsics.width, intrinsics.height)
         scale = np.array([1.0, intrinsics.fx / intrinsics.fy]) / side
         ends = (segments_px.reshape(-1, 2, 2) - [intrinsics.cx, intrinsics.cy]) * scale
@@ -116,12 +110,7 @@ class Lines:
 
 
 def search_frames(lines: Lines, focal: float | None, settings: LineCameraSettings = SETTINGS) -> tuple[FrameFit, ...]:
-    """The best room frames of a picture's lines, best first, at least one.
-
-    Args:
-        lines: The segments.
-        focal: Focal length over the longer side; None to look for it as well.
-    """
+    """The best room frames of a picture's lines, best first, at least one."""
     focals = FOCAL_GRID if focal is None else np.array([focal])
     starts: list[tuple[float, np.ndarray, float]] = []
     for f in focals:
