@@ -104,16 +104,9 @@ def photo_appearance(
         made = [(_face_material(one.item, face), face.picture) for face in one.faces] + of_slots
         materials[one.item.id] = tuple(material for material, _ in made)
         pictures |= {m.texture: picture for m, picture in made if m.texture is not None and picture is not None}
-    materials = share_materials(
-        materials,
-        _sets(scene),
-        {
-            (s.item.id, p.slot.name): float(p.near.sum()) * s.view.step**2
-            for s in seen
-            if s.view is not None
-            for p in s.pixels
-        },
-    )
+    viewed = [(s.item.id, s.view.step, p) for s in seen if s.view is not None for p in s.pixels]
+    shown = {(item_id, p.slot.name): float(p.near.sum()) * step**2 for item_id, step, p in viewed}
+    materials = share_materials(materials, _sets(scene), shown)
     used = {m.texture for of_one in materials.values() for m in of_one}
     pictures = {name: picture for name, picture in pictures.items() if name in used}
     read = PhotoAppearance({key: value for key, value in materials.items() if value}, pictures, light)
@@ -223,19 +216,17 @@ def _surfaces(
     if seen.view is None:
         return made
     for pixels in seen.pixels:
-        appearance = appearance_of(seen.view, pixels, rgb, light, seen.weaves.get(pixels.slot.name))
-        _, metallic = ROUGHNESS[appearance.slot.role]
-        name = (
-            None if appearance.texture is None else texture_name(seen.item.id, appearance.slot.name, appearance.texture)
-        )
+        slot = pixels.slot
+        appearance = appearance_of(seen.view, pixels, rgb, light, seen.weaves.get(slot.name))
+        texture = appearance.texture
         material = PhotoMaterial(
-            slot=appearance.slot.name,
+            slot=slot.name,
             colour=appearance.colour,
-            texture=name,
+            texture=None if texture is None else texture_name(seen.item.id, slot.name, texture),
             tile_m=appearance.tile_m,
             roughness=appearance.roughness,
-            metallic=metallic,
-            main=appearance.slot.main,
+            metallic=ROUGHNESS[slot.role][1],
+            main=slot.main,
         )
         made.append((material, appearance.texture))
     return made

@@ -218,18 +218,14 @@ def fit_line(
         normal = turned if turned @ normal > 0 else -turned
         offset = float(centre @ normal)
     length = float(np.ptp(points[core] @ np.array([-normal[1], normal[0]])))
-    axis = _axis_aligned_line(
-        points, weights, normal, noise, MAX_SNAP_RAD + float(np.arctan2(SETTINGS.narrow_slack_m, length))
-    )
+    max_rad = MAX_SNAP_RAD + float(np.arctan2(SETTINGS.narrow_slack_m, length))
+    axis = _axis_aligned_line(points, weights, normal, noise, max_rad)
     if axis is None:
         return normal, offset
     tight = SETTINGS.tight_m + SETTINGS.tight_per_noise_m * noise
     agree, at_axis = (weights[np.abs(points @ n - o) < tight].sum() for n, o in ((normal, offset), axis))
-    return (
-        axis
-        if at_axis > (SETTINGS.axis_share if length > SETTINGS.narrow_m else SETTINGS.narrow_share) * agree
-        else (normal, offset)
-    )
+    share = SETTINGS.axis_share if length > SETTINGS.narrow_m else SETTINGS.narrow_share
+    return axis if at_axis > share * agree else (normal, offset)
 
 
 def _axis_aligned_line(

@@ -96,15 +96,11 @@ def wall_runs(
 
 
 def _bin_headings(surface: MeasuredSurface, view: tuple[float, float]) -> _Headings:
-    edges = np.linspace(view[0], view[1], SETTINGS.heading_bins + 1)
-    of_point = ((heading(surface.points[:, :2], surface.camera_position[:2]) - view[0]) / (edges[1] - edges[0])).astype(
-        int
-    )
-    return _Headings(
-        edges,
-        of_point.clip(0, SETTINGS.heading_bins - 1),
-        surface.grid_rows * surface.grid_columns / SETTINGS.heading_bins,
-    )
+    bins = SETTINGS.heading_bins
+    edges = np.linspace(view[0], view[1], bins + 1)
+    headings = heading(surface.points[:, :2], surface.camera_position[:2])
+    of_point = ((headings - view[0]) / (edges[1] - edges[0])).astype(int).clip(0, bins - 1)
+    return _Headings(edges, of_point, surface.grid_rows * surface.grid_columns / bins)
 
 
 def _cheapest(surface: MeasuredSurface, walls: list[WallCandidate], headings: _Headings, top_m: float) -> list[Run]:
