@@ -140,13 +140,14 @@ def with_options(stages: Stages, files: PhotoFiles, options: BuildOptions) -> St
 
 def room_solver(name: Room) -> ArchitectureStage:
     """The solver that finds a room in depth by this name, one of `ROOMS`."""
-    from diorama_core.architecture.acdc import AcdcRoom
     from diorama_core.architecture.from_depth import PlanarRoom
     from diorama_core.architecture.plainrecon.stage import PlainRecon
     from diorama_core.architecture.rac.stage import RenderAndCompareRoom
+    from diorama_core.provenance import RoomMethod
 
+    acdc = PlainRecon(method=RoomMethod.ACDC)
     solvers: dict[Room, ArchitectureStage] = {
-        "closed": PlanarRoom(), "plainrecon": PlainRecon(), "rac": RenderAndCompareRoom(), "acdc": AcdcRoom()
+        "closed": PlanarRoom(), "plainrecon": PlainRecon(), "rac": RenderAndCompareRoom(), "acdc": acdc
     }  # fmt: skip
     return solvers[name]
 

@@ -158,9 +158,7 @@ def _face(
     roughness = ROUGHNESS.get(slot.role, SETTINGS.other_roughness)
     if "screen" in FACES.get(item.category, ((), ""))[0] and not is_lit(picture):
         dark = np.median(picture.colours[picture.seen], axis=0).clip(0, 255).astype(np.uint8)
-        return FlatFace(
-            slot, layout, np.broadcast_to(dark, (SETTINGS.dark_side_px, SETTINGS.dark_side_px, 3)).copy(), roughness
-        )
+        return FlatFace(slot, layout, np.tile(dark, (SETTINGS.dark_side_px, SETTINGS.dark_side_px, 1)), roughness)
     pixel_m = float(np.linalg.norm(rectangle.across * item.pose.scale)) / picture.seen.shape[1]
     return FlatFace(slot, layout, complete_picture(picture, pixel_m), roughness)
 
@@ -280,12 +278,7 @@ COMPLETION_SETTINGS = CompletionSettings()
 
 
 def complete_picture(rectified: Rectified, pixel_m: float) -> UInt8[np.ndarray, "h w 3"]:
-    """The whole picture.
-
-    Args:
-        rectified: At least something of it is seen.
-        pixel_m: Size of a texel.
-    """
+    """The whole picture, of which at least something is seen."""
     rim = round(COMPLETION_SETTINGS.rim_share * max(rectified.seen.shape))
     seen = cv2.erode(rectified.seen.astype(np.uint8), np.ones((2 * rim + 1,) * 2, np.uint8), borderValue=1).astype(bool)
     if not seen.any():

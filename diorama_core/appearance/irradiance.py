@@ -44,11 +44,6 @@ def irradiance_map(scene: Scene, camera: Camera, library: ShapeLibrary) -> Float
     """The light on what each pixel of the photo sees; 1 lights a white surface white.
 
     It has the colours of what is beside: a tan sofa on orange boards looks more orange than its leather is.
-
-    Args:
-        scene: With its light, in the poses in which the photo shows it.
-        camera: The photo's; the map has its size.
-        library: Where its shapes are.
     """
     k = camera.intrinsics
     shrink = min(1.0, SETTINGS.longest_px / max(k.width, k.height))

@@ -55,13 +55,7 @@ class Shade:
 def estimate_light(
     shades: Sequence[Shade], walls: Shade | None = None, to_window: Float[np.ndarray, "3"] | None = None
 ) -> RoomLight:
-    """The light that explains all materials' shades best; the usual one where nothing is known.
-
-    Args:
-        shades: Of the objects' materials.
-        walls: Those of one paint.
-        to_window: Unit vector from what stands in the room to where daylight comes in.
-    """
+    """The light that explains all materials' shades best; the usual one where nothing is known."""
     observations = [(s, 1.0) for s in shades if len(s.luminance) >= 2] + (
         [] if walls is None else [(walls, SETTINGS.of_walls)]
     )

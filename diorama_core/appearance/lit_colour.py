@@ -37,12 +37,7 @@ SETTINGS = LitColourSettings()
 def select_material_colour(
     colour: Float[np.ndarray, "3"], others: Sequence[Float[np.ndarray, "3"]]
 ) -> Float[np.ndarray, "3"]:
-    """The colour of a material that shows in one colour and in others (CIELAB).
-
-    Args:
-        colour: The one that speaks most for itself.
-        others: What much of the surface shows too.
-    """
+    """The colour of a material that shows in one colour, which speaks most for itself, and in others (CIELAB)."""
     lit = [other for other in others if is_shade(colour, other)]
     if lit:
         return max(lit, key=lambda other: float(other[0]))

@@ -78,8 +78,9 @@ def brighten(
         gain = shared[object_id]
         names: dict[str | None, str] = {}
         for name in sorted({m.texture for m in object_materials if m.texture is not None and m.texture in pictures}):
-            lit = _brighten_picture(pictures[name], gain)
-            names[name] = _name_of(name, lit)
+            texture = pictures[name]
+            lit = texture if gain == 1.0 else np.rint(255.0 * _apply_gain(texture / 255.0, gain)).astype(np.uint8)
+            names[name] = f"{name.rpartition('-')[0]}-{zlib.crc32(lit.tobytes()):08x}"  # ends in its own checksum
             textures[names[name]] = lit
         made[object_id] = tuple(
             replace(m, colour=_brighter(m.colour, gain), texture=names.get(m.texture, m.texture))
@@ -103,18 +104,9 @@ def _equalise_gains(
     return shared
 
 
-def _name_of(name: str, changed: UInt8[np.ndarray, "_ _ 3"]) -> str:
-    """The name of a changed picture, which ends in its own checksum."""
-    return f"{name.rpartition('-')[0]}-{zlib.crc32(changed.tobytes()):08x}"
-
-
 def _headroom(material: PhotoMaterial) -> float:
     brightest = float(srgb_to_linear(np.asarray(material.colour, dtype=np.float64)).max())
     return max(1.0, MAX_LINEAR / max(brightest, DARKEST))
-
-
-def _brighten_picture(texture: UInt8[np.ndarray, "h w 3"], gain: float) -> UInt8[np.ndarray, "h w 3"]:
-    return texture if gain == 1.0 else np.rint(255.0 * _apply_gain(texture / 255.0, gain)).astype(np.uint8)
 
 
 def _brighter(colour: tuple[float, float, float], gain: float) -> tuple[float, float, float]:

@@ -104,16 +104,9 @@ def photo_appearance(
         made = [(_face_material(one.item, face), face.picture) for face in one.faces] + of_slots
         materials[one.item.id] = tuple(material for material, _ in made)
         pictures |= {m.texture: picture for m, picture in made if m.texture is not None and picture is not None}
-    materials = share_materials(
-        materials,
-        _sets(scene),
-        {
-            (s.item.id, p.slot.name): float(p.near.sum()) * s.view.step**2
-            for s in seen
-            if s.view is not None
-            for p in s.pixels
-        },
-    )
+    viewed = [(s.item.id, s.view.step, p) for s in seen if s.view is not None for p in s.pixels]
+    shown = {(item_id, p.slot.name): float(p.near.sum()) * step**2 for item_id, step, p in viewed}
+    materials = share_materials(materials, _sets(scene), shown)
     used = {m.texture for of_one in materials.values() for m in of_one}
     pictures = {name: picture for name, picture in pictures.items() if name in used}
     read = PhotoAppearance({key: value for key, value in materials.items() if value}, pictures, light)
@@ -128,15 +121,7 @@ def _as_bright(
     scene: Scene,
     library: ShapeLibrary,
 ) -> PhotoAppearance:
-    """The materials as bright as the photo shows them in the scene's light, part of which they reflect themselves.
-
-    Args:
-        read: The materials.
-        rgb: The photo.
-        read_from: Pixels that show the materials of each object.
-        scene: As in `photo_appearance`.
-        library: Where its shapes are.
-    """
+    """The materials as bright as the photo shows them in the scene's light, part of which they reflect themselves."""
     visible = {key: pixels for key, pixels in read_from.items() if key in read.materials}
     for _ in range(SETTINGS.brightness_rounds):
         gains = brightness_gains(rgb, visible, read.apply(scene), read.pictures, library)
@@ -231,19 +216,17 @@ def _surfaces(
     if seen.view is None:
         return made
     for pixels in seen.pixels:
-        appearance = appearance_of(seen.view, pixels, rgb, light, seen.weaves.get(pixels.slot.name))
-        _, metallic = ROUGHNESS[appearance.slot.role]
-        name = (
-            None if appearance.texture is None else texture_name(seen.item.id, appearance.slot.name, appearance.texture)
-        )
+        slot = pixels.slot
+        appearance = appearance_of(seen.view, pixels, rgb, light, seen.weaves.get(slot.name))
+        texture = appearance.texture
         material = PhotoMaterial(
-            slot=appearance.slot.name,
+            slot=slot.name,
             colour=appearance.colour,
-            texture=name,
+            texture=None if texture is None else texture_name(seen.item.id, slot.name, texture),
             tile_m=appearance.tile_m,
             roughness=appearance.roughness,
-            metallic=metallic,
-            main=appearance.slot.main,
+            metallic=ROUGHNESS[slot.role][1],
+            main=slot.main,
         )
         made.append((material, appearance.texture))
     return made
@@ -255,11 +238,6 @@ def hiding(
     """Where other objects stand before one: smaller ones wherever they are, larger ones beside its own mask.
 
     Without the larger ones, which may as well lie below or stand behind it, it is where something surely does.
-
-    Args:
-        detected: The object.
-        objects: What was found in the photo, with masks.
-        smaller_only: Whether larger ones are left out.
     """
     hidden, area = np.zeros(detected.mask.shape, dtype=bool), detected.pixels
     for other in objects:

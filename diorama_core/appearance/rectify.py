@@ -50,11 +50,7 @@ def face_homography(camera: Camera, corners_world: Float[np.ndarray, "4 3"]) -> 
 
 
 def outline_px(H: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "n 2"]:
-    """Corners of what is before the camera of a rectangle, in order; as seen, it may reach out of the photo.
-
-    Args:
-        H: As `face_homography` has it.
-    """
+    """Corners of what is before the camera of a rectangle, in order; as seen, it may reach out of the photo."""
     corners = UNIT_SQUARE @ H.T
     kept = []
     for here, after in zip(corners, np.roll(corners, -1, axis=0), strict=True):

@@ -11,9 +11,9 @@ from jaxtyping import Bool, Float, UInt8
 
 from diorama_core.appearance.light import Shade
 from diorama_core.artefacts import DetectedObject
-from diorama_core.geometry.planes import is_in_plane_polygon
+from diorama_core.geometry.casting import cast_planes
 from diorama_core.io.srgb import luminance, srgb_to_linear
-from diorama_core.scene.types import Architecture, Camera, Plane, Scene
+from diorama_core.scene.types import Scene
 
 
 @dataclass(frozen=True)
@@ -50,22 +50,18 @@ SETTINGS = AppearanceSettings()
 
 
 def wall_shade(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], scene: Scene) -> Shade | None:
-    """The walls of the paint that is seen most, as one material at several normals; None where only one is seen.
-
-    Args:
-        rgb: The photo, as white light would have it.
-        objects: What stands before the walls.
-        scene: With the photo's camera.
-    """
+    """The walls of the paint that is seen most, as one material at several normals; None where only one is seen."""
     walls = [p for p in scene.architecture.by_role("wall") if p.is_seen]
     if scene.camera is None or len(walls) < 2:
         return None
     height, width = rgb.shape[:2]
     x, y = np.meshgrid(np.arange(0, width, SETTINGS.step_px), np.arange(0, height, SETTINGS.step_px))
-    which = _plane_seen(scene.architecture, scene.camera, np.stack([x, y], axis=-1) + 0.5)
+    rays = scene.camera.rays(np.stack([x, y], axis=-1) + 0.5)
+    which = cast_planes(scene.camera.position, rays, scene.architecture.planes, slack_m=0.0)[1]
     free = ~_object_mask(objects, (height, width))[y, x]
     linear = srgb_to_linear(rgb[y, x] / 255.0)
-    seen = {w.id: linear[free & (which == _index(scene.architecture, w))] for w in walls}
+    number = {p.id: k for k, p in enumerate(scene.architecture.planes)}
+    seen = {w.id: linear[free & (which == number[w.id])] for w in walls}
     medians = {w.id: np.median(seen[w.id], axis=0) for w in walls if len(seen[w.id]) >= SETTINGS.min_cells}
     if not medians:
         return None
@@ -81,13 +77,7 @@ def wall_shade(rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject
 def window_direction(
     rgb: UInt8[np.ndarray, "h w 3"], objects: Sequence[DetectedObject], scene: Scene
 ) -> Float[np.ndarray, "3"] | None:
-    """Unit vector from what stands in the room to its largest window; None where none is seen by day.
-
-    Args:
-        rgb: The photo, as white light would have it.
-        objects: What was found in the photo, with masks.
-        scene: As it is.
-    """
+    """Unit vector from what stands in the room to its largest window; None where none is seen by day."""
     mask_of = {o.id: o.mask for o in objects}
     grey = luminance(srgb_to_linear(rgb[:: SETTINGS.step_px, :: SETTINGS.step_px] / 255.0))
     windows = [o for o in scene.objects if o.category == "window" and o.id in mask_of]
@@ -109,25 +99,6 @@ def _median(grey: Float[np.ndarray, "h w"], mask: Bool[np.ndarray, "h w"]) -> fl
 def _far(a: Float[np.ndarray, "3"], b: Float[np.ndarray, "3"]) -> float:
     """Difference of two chromaticities."""
     return float(np.abs(a / max(float(a.sum()), 1e-6) - b / max(float(b.sum()), 1e-6)).max())
-
-
-def _index(room: Architecture, plane: Plane) -> int:
-    return next(k for k, p in enumerate(room.planes) if p.id == plane.id)
-
-
-def _plane_seen(room: Architecture, camera: Camera, pixels: Float[np.ndarray, "h w 2"]) -> np.ndarray:
-    """Index of the plane behind each pixel; -1 where there is none."""
-    rays = camera.rays(pixels)
-    nearest, which = np.full(pixels.shape[:2], np.inf), np.full(pixels.shape[:2], -1)
-    for index, plane in enumerate(room.planes):
-        slant = rays @ plane.normal
-        with np.errstate(divide="ignore", invalid="ignore"):
-            away = (plane.offset - float(camera.position @ plane.normal)) / slant
-        ahead = np.isfinite(away) & (away > 0) & (away < nearest)
-        points = camera.position + np.where(ahead, away, 0.0)[..., None] * rays
-        met = ahead & is_in_plane_polygon(points, plane)
-        nearest, which = np.where(met, away, nearest), np.where(met, index, which)
-    return which
 
 
 def _object_mask(objects: Sequence[DetectedObject], size: tuple[int, int]) -> Bool[np.ndarray, "h w"]:

@@ -148,7 +148,7 @@ def slot_pixels(
     beside = view.crop(background) & (view.slot < 0)
     seeds = _own_colours(lab, of_slots, beside)
     pixels_of_slots = []
-    like = {index: _alike(lab, seeds[index]) for index in of_slots}
+    like = {index: _is_near(lab - seeds[index]) for index in of_slots}
     near = {index: mine & like[index] for index, mine in of_slots.items()}
     for index, mine in of_slots.items():
         unlike = [k for k in of_slots if slots[k].role != slots[index].role and _is_near(seeds[k] - seeds[index])]
@@ -166,13 +166,7 @@ def slot_pixels(
 def whole_pixels(
     view: SurfaceView, slots: tuple[Slot, ...], visible: Bool[np.ndarray, "h w"]
 ) -> tuple[SlotPixels, ...]:
-    """All that is seen of a small thing as its main slot, of one colour; none where that is hardly anything.
-
-    Args:
-        view: The shape in its pose.
-        slots: Its slots.
-        visible: The object's inner pixels, without what stands before it.
-    """
+    """All that is seen of a small thing as its main slot, of one colour; none where that is hardly anything."""
     seen = view.crop(visible) & (view.slot >= 0)
     if np.count_nonzero(seen) * view.step**2 < MIN_OF_WHOLE:
         return ()
@@ -196,38 +190,30 @@ def _own_colours(
     seeds = {index: colours[0] for index, colours in options.items()}
     for index, mine in of_slots.items():
         others = [(of_slots[k], seeds[k]) for k in of_slots if k != index]
-        colours = []
-        shares = []
+        own, shares = [], []
         for seed in options[index]:
-            near = _alike(lab, seed)
+            near = _is_near(lab - seed)
             share, pixels = _share(near, mine), np.count_nonzero(near & mine)
             alike = [(near, where) for where, main in others if _is_near(main - seed)]
             # The lit side of a neighbour is its colour, too; what is darker may be something black.
-            alike += [(near | _alike(lab, main), where) for where, main in others if is_shade(main, seed)]
+            alike += [(near | _is_near(lab - main), where) for where, main in others if is_shade(main, seed)]
             elsewhere = [_share(of, where) for of, where in alike if np.count_nonzero(of & where) >= pixels]
             elsewhere.append(_covers(near, beside) / SETTINGS.beside)
-            colours.append(share / max([share, *elsewhere, 1e-9]))
+            own.append(share / max([share, *elsewhere, 1e-9]))
             shares.append(share)
-        chosen = int(np.argmax(colours))
+        chosen = int(np.argmax(own))
         main = options[index][chosen]
-        as_good = [k for k, score in enumerate(colours) if score >= SETTINGS.as_good * colours[chosen]]
+        as_good = [k for k, score in enumerate(own) if score >= SETTINGS.as_good * own[chosen]]
         much = [options[index][k] for k in as_good if shares[k] >= SETTINGS.min_outlined]
-        seeds[index] = select_material_colour(
-            main, [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s)]
-        )
+        of_it = [s for s in much if s[0] <= main[0] or _is_not_behind(lab, mine, beside, s)]
+        seeds[index] = select_material_colour(main, of_it)
     return seeds
 
 
 def _is_before_all(
     alike: Bool[np.ndarray, "gh gw"], mine: Bool[np.ndarray, "gh gw"], foreign: Sequence[Bool[np.ndarray, "gh gw"]]
 ) -> bool:
-    """Whether a slot's colour is of something before the object: on it in part, and as much on slots of other colours.
-
-    Args:
-        alike: Pixels of about its colour.
-        mine: The slot.
-        foreign: The slots of other colours.
-    """
+    """Whether a slot's colour is of what is before the object: on it in part, and as much on slots of other colours."""
     share = _share(alike, mine)
     if share >= SETTINGS.mostly or not foreign:
         return False
@@ -281,23 +267,13 @@ def _share(alike: Bool[np.ndarray, "gh gw"], where: Bool[np.ndarray, "gh gw"]) -
     return float(alike[where].mean())
 
 
-def _alike(lab: Float32[np.ndarray, "gh gw 3"], seed: np.ndarray) -> Bool[np.ndarray, "gh gw"]:
-    """Pixels of about one colour: shade varies over one surface, hue hardly."""
-    return np.asarray(_is_near(lab - seed))
-
-
 def _is_near(difference: np.ndarray) -> np.ndarray:
+    """Which differences in CIELAB are those of one colour: shade varies over one surface, hue hardly."""
     return np.asarray(np.linalg.norm(difference / (2.0, 1.0, 1.0), axis=-1) < SETTINGS.near_lab)
 
 
 def shade_of(view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"]) -> Shade:
-    """How bright the slot is at each of its normals.
-
-    Args:
-        view: The shape in its pose.
-        pixels: The slot's.
-        rgb: The photo.
-    """
+    """How bright the slot is at each of its normals."""
     linear = luminance(srgb_to_linear(view.crop(rgb)[pixels.near] / 255.0))
     label, count = cells_of(np.round(view.normals_world[pixels.near] / SETTINGS.normal_cell))
     of = [label == k for k in np.flatnonzero(count >= SETTINGS.min_face_pixels)]
@@ -336,29 +312,18 @@ def appearance_of(
         example = best_example(view, pixels.mine, pixels.near, rgb)
     if example is None:
         tile_m = pixels.slot.tile_m if pixels.slot.role in {*WOVEN_ROLES, PRINTED} else None
-        if weave is None or tile_m is None or not _is_plain(view, pixels, rgb, weave, tile_m):
+        # A plain picture takes the place of the library's print always: that is another one's.
+        if (
+            weave is None
+            or tile_m is None
+            or not (pixels.slot.role == PRINTED or shows_plain(view, pixels.near, rgb, weave, tile_m))
+        ):
             return SlotAppearance(pixels.slot, (red, green, blue), None, 1.0, roughness)
-        plain = np.rint(255 * np.clip([red, green, blue], 0, 1)).astype(np.uint8)
-        return SlotAppearance(
-            pixels.slot,
-            (red, green, blue),
-            np.tile(plain, (SETTINGS.plain_px, SETTINGS.plain_px, 1)),
-            tile_m,
-            roughness,
-        )
+        colour = np.rint(255 * np.clip([red, green, blue], 0, 1)).astype(np.uint8)
+        plain = np.tile(colour, (SETTINGS.plain_px, SETTINGS.plain_px, 1))
+        return SlotAppearance(pixels.slot, (red, green, blue), plain, tile_m, roughness)
     texture = tileable(_scale_to_albedo(example, albedo))
     return SlotAppearance(pixels.slot, (red, green, blue), texture, example.texel_m * texture.shape[0], roughness)
-
-
-def _is_plain(
-    view: SurfaceView,
-    pixels: SlotPixels,
-    rgb: UInt8[np.ndarray, "h w 3"],
-    weave: UInt8[np.ndarray, "th tw 3"],
-    tile_m: float,
-) -> bool:
-    """Whether a plain picture takes the place of the library's: of a print always, which is another one's."""
-    return pixels.slot.role == PRINTED or shows_plain(view, pixels.near, rgb, weave, tile_m)
 
 
 def _scale_to_albedo(example: Example, albedo: Float[np.ndarray, "3"]) -> Example:

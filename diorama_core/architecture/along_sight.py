@@ -122,12 +122,7 @@ REACH_M = 0.02
 
 
 def move_in_front_of_walls(geometry: ObjectGeometry, room: ArchitectureEstimate) -> ObjectGeometry:
-    """Objects with unseen feet brought before the walls, with what they carry.
-
-    Args:
-        geometry: Of all objects.
-        room: Walls with their confidence, and supports whose parents are objects or planes.
-    """
+    """Objects with unseen feet brought before the walls, with what they carry."""
     floors = {p.id for p in room.architecture.by_role("floor")}
     walls = tuple(w for w in room.architecture.by_role("wall") if w.confidence >= MIN_CONFIDENCE)
     standing = {s.child for s in room.supports if s.parent in floors}

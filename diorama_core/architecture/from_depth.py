@@ -59,10 +59,10 @@ class PlanarRoom:
         progress.report(0.6, "Closing the room at its corners")
         pieces = outline(surface, walls, view_headings(geometry.camera), top_m, self.settings)
         pieces = pieces or (_guess_wall(surface, geometry.camera),)
-        floor_seen = _share(surface, 0.0, 1.0) > self.settings.min_flat_share
+        floor_seen = _floor_share(surface) > self.settings.min_flat_share
         openings: tuple[tuple[WallOpening, ...], ...] = ((),) * len(pieces)
         pointed: tuple[str, ...] = ()
-        if not _has_slope(ceilings):
+        if all(c.is_flat for c in ceilings):
             measured = tuple(find_openings(surface, p, top_m, self.settings) for p in pieces)
             openings, pointed = with_passages(
                 measured,
@@ -94,12 +94,10 @@ def _top(surface: MeasuredSurface, ceilings: tuple[CeilingPiece, ...], settings:
     return flat[0] if flat else max(settings.usual_ceiling_m, seen)
 
 
-def _share(surface: MeasuredSurface, height_m: float, facing: float) -> float:
-    """Share of the points on a horizontal plane that faces up (1) or down (-1)."""
-    if len(surface.points) == 0:
-        return 0.0
-    near = np.abs(surface.points[:, 2] - height_m) < 0.05 + tolerance_m(surface.depth_m)
-    return float((near & (surface.normals[:, 2] * facing > 0.85)).mean())
+def _floor_share(surface: MeasuredSurface) -> float:
+    """Share of the points on the floor."""
+    near = np.abs(surface.points[:, 2]) < 0.05 + tolerance_m(surface.depth_m)
+    return float((near & (surface.normals[:, 2] > 0.85)).mean()) if len(near) else 0.0
 
 
 def view_headings(camera: Camera) -> tuple[float, float]:
@@ -123,10 +121,6 @@ def _guess_wall(surface: MeasuredSurface, camera: Camera) -> WallPiece:
     left, right = view_headings(camera)
     span = (y - origin[1]) * np.tan(np.clip([left, right], -1.2, 1.2))
     return WallPiece(np.array([origin[0] + span[0] - 0.3, y]), np.array([origin[0] + span[1] + 0.3, y]), None)
-
-
-def _has_slope(ceilings: tuple[CeilingPiece, ...]) -> bool:
-    return any(not c.is_flat for c in ceilings)
 
 
 def _source(

@@ -161,23 +161,24 @@ def _fit_walls_to_backs(scene: Scene, feet_seen: Collection[str] | None, objects
     for wall in scene.architecture.by_role("wall"):
         against = [scene.object(s.child) for s in edges if wall.id in s.adheres_to]
         against += [o for o in _hanging(scene, wall.id) if objects_measured or o.category == DOOR]
-        others = [
-            item
-            for s in edges
-            if wall.id not in s.adheres_to and _wall_gap_m(item := scene.object(s.child), wall, np.inf) < np.inf
-        ]
+        others = [scene.object(s.child) for s in edges if wall.id not in s.adheres_to]
+        others = [item for item in others if _wall_gap_m(item, wall, np.inf) < np.inf]
         backs, certainty = _backs(against, wall, feet_seen)
         before, before_certainty = _backs(others, wall, feet_seen)
         tried = np.concatenate([[0.0], backs, before]) if objects_measured else np.concatenate([[0.0], backs])
         inward = _best_inward_shift(tried, backs, certainty, before, before_certainty)
         if abs(inward) < SETTINGS.margin_m:
             continue
-        try:
-            moved = move_plane(scene, wall.id, SETTINGS.margin_m - inward)
-        except EditRefused:
-            continue
-        scene = replace(moved, objects=scene.objects)
+        scene = _move_wall(scene, wall.id, SETTINGS.margin_m - inward)
     return scene
+
+
+def _move_wall(scene: Scene, wall_id: str, outward_m: float) -> Scene:
+    """The scene with a wall moved as far as that may be, and with objects where they were."""
+    try:
+        return replace(move_plane(scene, wall_id, outward_m), objects=scene.objects)
+    except EditRefused:
+        return scene
 
 
 def _without_far_adherence(scene: Scene) -> Scene:
@@ -222,17 +223,17 @@ def _lower_wall_confidence(scene: Scene, standing: Sequence[SceneObject]) -> Sce
 
     The front of furniture that nobody marked was taken for such a wall, or it ends before the object.
     """
-    doubted = {p.id for p in scene.architecture.planes if p.is_seen and any(_is_behind(o, p) for o in standing)}
-    if not doubted:
-        return scene
-    planes = (replace(p, confidence=SETTINGS.doubted) if p.id in doubted else p for p in scene.architecture.planes)
-    return replace(scene, architecture=Architecture(tuple(planes)))
+    for wall in scene.architecture.by_role("wall"):
+        behind = [o for o in standing if float(o.pose.position @ wall.normal) - wall.offset < -SETTINGS.clearly_m]
+        if wall.is_seen and any(_is_between_ends(o, wall) for o in behind):
+            scene = _with_plane(scene, replace(wall, confidence=SETTINGS.doubted))
+    return scene
 
 
-def _is_behind(item: SceneObject, plane: Plane) -> bool:
-    """Whether an object's middle is clearly behind a wall, between its ends."""
-    ahead_m = float(item.pose.position @ plane.normal) - plane.offset
-    return plane.role == "wall" and ahead_m < -SETTINGS.clearly_m and _is_between_ends(item, plane)
+def _with_plane(scene: Scene, plane: Plane) -> Scene:
+    """The scene with another plane in place of the one of its id."""
+    planes = tuple(plane if p.id == plane.id else p for p in scene.architecture.planes)
+    return replace(scene, architecture=Architecture(planes))
 
 
 def _is_between_ends(item: SceneObject, wall: Plane) -> bool:
@@ -260,11 +261,7 @@ def _move_wall_behind_objects(
     deepest = min((_wall_gap_m(o, wall, inward) for o in standing), default=inward)
     if inward == 0.0 and deepest == inward:
         return scene
-    try:
-        moved = move_plane(scene, wall_id, SETTINGS.margin_m - deepest if deepest < inward else -inward)
-    except EditRefused:
-        return scene
-    return replace(moved, objects=scene.objects)
+    return _move_wall(scene, wall_id, SETTINGS.margin_m - deepest if deepest < inward else -inward)
 
 
 def _hanging(scene: Scene, wall_id: str) -> list[SceneObject]:
@@ -292,12 +289,9 @@ def _lengthen_wall(scene: Scene, wall_id: str) -> Scene:
     ):
         at_end = np.abs(along - end) < SETTINGS.joined_m
         beyond = (reach - end) * np.sign(end - along.mean())
-        if beyond > 0.0 and not _meets_a_wall(wall, wall.polygon[at_end], seen, SETTINGS.joined_m):
+        if beyond > 0.0 and not _meets_a_wall(wall, wall.polygon[at_end], seen):
             polygon[at_end] += (reach - end) * level
-    if np.array_equal(polygon, wall.polygon):
-        return scene
-    planes = tuple(replace(p, polygon=polygon) if p.id == wall_id else p for p in scene.architecture.planes)
-    return replace(scene, architecture=Architecture(planes))
+    return scene if np.array_equal(polygon, wall.polygon) else _with_plane(scene, replace(wall, polygon=polygon))
 
 
 def _wall_gap_m(item: SceneObject, wall: Plane, inward_m: float = 0.0) -> float:
@@ -307,7 +301,7 @@ def _wall_gap_m(item: SceneObject, wall: Plane, inward_m: float = 0.0) -> float:
     """
     if not _is_between_ends(item, wall) or float(item.pose.position @ wall.normal) < wall.offset:
         return inward_m
-    return min(float((item.corners_world @ wall.normal).min()) - wall.offset, inward_m)
+    return min(_back(item, wall), inward_m)
 
 
 def _footprint(scene: Scene, item: SceneObject) -> Float[np.ndarray, "k 2"]:
@@ -315,8 +309,7 @@ def _footprint(scene: Scene, item: SceneObject) -> Float[np.ndarray, "k 2"]:
     polygon = np.column_stack([_box_footprint(item), np.zeros(4)])
     for wall in scene.architecture.by_role("wall"):
         if wall.is_seen and _wall_gap_m(item, wall) < 0.0:
-            level = wall.normal * [1.0, 1.0, 0.0]
-            polygon = clip_polygon(polygon, level, wall.offset)
+            polygon = clip_polygon(polygon, wall.normal * [1.0, 1.0, 0.0], wall.offset)
     return polygon[:, :2]
 
 
@@ -329,30 +322,20 @@ def _box_footprint(item: SceneObject) -> Float[np.ndarray, "4 2"]:
 def _with_floor_under(scene: Scene, prints: list[Float[np.ndarray, "_ 2"]]) -> Scene:
     floor = scene.architecture.floor
     assert floor is not None
-    missing = _footprints_off_floor(floor, prints)
+    here = _section(floor.polygon[:, :2])
+    missing = [p for p in prints if _area(p) - (_section(p) ^ here).area() > SETTINGS.min_area_m2]
     if not missing:
         return scene
-    sections = [_section(floor.polygon[:, :2]), *map(_section, missing)]
-    union = manifold3d.CrossSection.batch_boolean(sections, manifold3d.OpType.Add)
-    outlines = union.to_polygons()
-    outer = [o for o in outlines if signed_area(o) > 0]
+    union = manifold3d.CrossSection.batch_boolean([here, *map(_section, missing)], manifold3d.OpType.Add)
+    outer = [o for o in union.to_polygons() if signed_area(o) > 0]
     # Footprints away from the floor are reached by the hull of both.
     outline = outer[0] if len(outer) == 1 else union.hull().to_polygons()[0]
     return _with_floor_outline(scene, floor, outline)
 
 
-def _footprints_off_floor(floor: Plane, prints: list[Float[np.ndarray, "_ 2"]]) -> list[Float[np.ndarray, "_ 2"]]:
-    """The footprints that are not on the floor altogether."""
-    here = _section(floor.polygon[:, :2])
-    return [p for p in prints if _area(p) - (_section(p) ^ here).area() > SETTINGS.min_area_m2]
-
-
 def _with_floor_outline(scene: Scene, floor: Plane, outline: Float[np.ndarray, "k 2"]) -> Scene:
-    height = float(floor.centre[2])
-    polygon = np.column_stack([outline, np.full(len(outline), height)])
-    wide = replace(floor, polygon=polygon)
-    planes = tuple(wide if p.id == floor.id else p for p in scene.architecture.planes)
-    return replace(scene, architecture=Architecture(planes))
+    polygon = np.column_stack([outline, np.full(len(outline), float(floor.centre[2]))])
+    return _with_plane(scene, replace(floor, polygon=polygon))
 
 
 def _section(polygon: Float[np.ndarray, "k 2"]) -> manifold3d.CrossSection:
@@ -363,10 +346,8 @@ def _area(polygon: Float[np.ndarray, "k 2"]) -> float:
     return abs(signed_area(polygon))
 
 
-def _meets_a_wall(wall: Plane, corners: Float[np.ndarray, "k 3"], walls: Sequence[Plane], within_m: float) -> bool:
+def _meets_a_wall(wall: Plane, corners: Float[np.ndarray, "k 3"], walls: Sequence[Plane]) -> bool:
     """Whether all of some corners of a wall are at corners of another one."""
-    return any(
-        bool((np.linalg.norm(other.polygon[:, None] - corners[None], axis=2).min(axis=0) < within_m).all())
-        for other in walls
-        if other.id != wall.id
-    )
+    others = [other.polygon for other in walls if other.id != wall.id]
+    away = [np.linalg.norm(polygon[:, None] - corners[None], axis=2).min(axis=0) for polygon in others]
+    return any(bool((distance < SETTINGS.joined_m).all()) for distance in away)

@@ -51,8 +51,8 @@ def plane_uv(plane: Plane) -> Float[np.ndarray, "n 2"]:
 
 
 def clip_polygon(
-    polygon: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, "3"], offset: float
-) -> Float[np.ndarray, "m 3"]:
+    polygon: Float[np.ndarray, "n d"], normal: Float[np.ndarray, "d"], offset: float
+) -> Float[np.ndarray, "m d"]:
     """The part of a convex polygon where `normal . p >= offset` (Sutherland-Hodgman); empty when none is."""
     side = polygon @ normal - offset
     corners: list[np.ndarray] = []
@@ -63,7 +63,7 @@ def clip_polygon(
         if (side[i] >= 0) != (side[j] >= 0):
             share = side[i] / (side[i] - side[j])
             corners.append(polygon[i] + share * (polygon[j] - polygon[i]))
-    return np.array(corners).reshape(-1, 3)
+    return np.array(corners).reshape(-1, polygon.shape[1])
 
 
 def fit_plane(points: Float[np.ndarray, "n 3"]) -> tuple[Float[np.ndarray, "3"], float]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from diorama_core.architecture.acdc import AcdcRoom
 from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.artefacts import Inputs
 from diorama_core.layout.settled import Settled
@@ -16,6 +15,7 @@ from diorama_core.pipeline.stages import Stages
 from diorama_core.pose.correspondence.solvers import HALF_GRID, CorrespondencePose
 from diorama_core.pose.discrete_turns import DiscreteTurns
 from diorama_core.protocols import ArchitectureStage
+from diorama_core.provenance import RoomMethod
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.retrieval.published import MatchedByLooks
 
@@ -30,7 +30,7 @@ def acdc_stages(base: Stages, has_depth: bool, library: ShapeLibrary) -> Stages:
     views = base.pose if isinstance(base.pose, CorrespondencePose) else CorrespondencePose(library, grid=HALF_GRID)
     return replace(
         base,
-        architecture=AcdcRoom() if has_depth else base.architecture,
+        architecture=PlainRecon(method=RoomMethod.ACDC) if has_depth else base.architecture,
         retrieval=MatchedByLooks(library, similarity),
         pose=DiscreteTurns(views),
         layout=Settled(),

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 
-from diorama_core.geometry.casting import camera_rays, cast_planes
+from diorama_core.geometry.casting import camera_rays, cast_box, cast_planes
 from diorama_core.geometry.planes import clip_polygon
 from diorama_core.scene.types import Camera, Plane
-from tests.synthetic_rooms import Shot, cuboid, look, shoot
+from tests.synthetic_rooms import Shot, cuboid, floor, look, shoot, wall
 
 KINDS = ("box", "l_shape", "slanted", "sloped", "gable", "one_wall", "alcove", "five_walls")
 SIZE = (640, 480)
@@ -36,6 +37,14 @@ def slope(low_m: float, tilt_deg: float, toward: tuple[float, float], at: tuple[
     run = np.tan(np.deg2rad(tilt_deg))
     normal = -np.array([*(run * direction), 1.0]) / np.hypot(run, 1.0)
     return Ceiling(tuple(normal), float(normal @ np.array([*at, low_m])))
+
+
+def open_room(*corners, top: float = 2.6) -> tuple[Plane, ...]:
+    """Floor, and walls along corners from left to right seen from inside, without one behind the camera."""
+    return (floor(*reversed(corners)), *(wall(f"wall_{k}", a, b, top) for k, (a, b) in enumerate(pairwise(corners), 1)))
+
+
+L_SHAPE = open_room((-2.2, -3), (-2.2, 4.8), (0.3, 4.8), (0.3, 3), (2.6, 3), (2.6, -3))
 
 
 def prism(corners, ceilings) -> tuple[Plane, ...]:
@@ -151,8 +160,6 @@ def _inside(box, planes) -> bool:
 
 
 def _hides(camera: Camera, box, points):
-    from diorama_core.geometry.casting import cast_box
-
     t, _ = cast_box(camera.position, points - camera.position, box.R_world_object, box.centre, box.size_m)
     return t < 0.99
 

@@ -12,17 +12,10 @@ import pytest
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.progress import Progress
 from tests import synthetic_rooms
+from tests.architecture.known_rooms import L_SHAPE
 from tests.synthetic_rooms import box_room, cuboid, floor, shoot, wall
 
 look = partial(synthetic_rooms.look, size=(400, 300))
-L_SHAPE = (
-    floor((-3, -2), (3, -2), (3, 5), (-3, 5)),
-    wall("left", (-3, -2), (-3, 5), 2.6),
-    wall("far", (-3, 5), (0.5, 5), 2.6),
-    wall("corner", (0.5, 5), (0.5, 3), 2.6),
-    wall("near", (0.5, 3), (3, 3), 2.6),
-    wall("right", (3, 3), (3, -2), 2.6),
-)
 
 
 def reconstruct(shot, with_masks=False):

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from diorama_core.architecture.acdc import AcdcRoom
 from diorama_core.architecture.from_depth import PlanarRoom
 from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.artefacts import Inputs, Photo
@@ -15,6 +14,7 @@ from diorama_core.perception.foundation.empty_room import EmptyRoomArchitecture
 from diorama_core.pipeline.published import acdc_stages, published_acdc_stages, published_stages, with_room
 from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.pose.discrete_turns import DiscreteTurns
+from diorama_core.provenance import RoomMethod
 from diorama_core.retrieval.published import MatchedByLooks
 from tests.pose.rooms import LIBRARY, random_room
 
@@ -48,7 +48,7 @@ def test_rooms_shapes_poses_and_layout_are_replaced_and_perception_stays() -> No
     inputs = random_room(0).inputs
     base = embedded_stages(inputs, LIBRARY)
     stages = acdc_stages(base, True, LIBRARY)
-    assert isinstance(stages.architecture, AcdcRoom)
+    assert stages.architecture == PlainRecon(method=RoomMethod.ACDC)
     assert isinstance(stages.retrieval, MatchedByLooks)
     assert isinstance(stages.pose, DiscreteTurns)
     assert isinstance(stages.layout, Settled)

@@ -50,21 +50,17 @@ def upright(wall: PlaneSheet, floor: PlaneSheet) -> PlaneSheet:
     rows = np.stack([wall.normal, floor.normal, line / length])
     foot = np.linalg.solve(rows, np.array([wall.offset, floor.offset, 0.0]))
     offset = float(normal @ foot)
-    return PlaneSheet(normal, offset, _project(wall.corners, normal, offset))
+    return PlaneSheet(normal, offset, wall.corners - (wall.corners @ normal - offset)[:, None] * normal)
 
 
 def join_walls(floor: PlaneSheet, walls: list[PlaneSheet]) -> list[PlaneSheet]:
     """Walls with feet on the floor and, where two come near their common line, with shared corners on it."""
-    walls = [_snap_to_floor(w, floor) for w in walls]
+    heights = [wall.corners @ floor.normal - floor.offset for wall in walls]
+    drops = [np.where(np.abs(height) < SNAP_M, height, 0.0)[:, None] * floor.normal for height in heights]
+    walls = [replace(wall, corners=wall.corners - drop) for wall, drop in zip(walls, drops, strict=True)]
     for i, j in combinations(range(len(walls)), 2):
         walls[i], walls[j] = _meeting(walls[i], walls[j])
     return walls
-
-
-def _snap_to_floor(wall: PlaneSheet, floor: PlaneSheet) -> PlaneSheet:
-    height = wall.corners @ floor.normal - floor.offset
-    drop = np.where(np.abs(height) < SNAP_M, height, 0.0)
-    return replace(wall, corners=wall.corners - drop[:, None] * floor.normal)
 
 
 def _meeting(a: PlaneSheet, b: PlaneSheet) -> tuple[PlaneSheet, PlaneSheet]:
@@ -97,10 +93,10 @@ def _nearest_two(
     return two if distance[two].max() < JOIN_M else None
 
 
-def _project(
-    points: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, "3"], offset: float
-) -> Float[np.ndarray, "n 3"]:
-    return points - (points @ normal - offset)[:, None] * normal
+def counter_clockwise(corners: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, "3"]) -> Float[np.ndarray, "n 3"]:
+    """Corners of a polygon in the order in which they are counter-clockwise seen from where its normal points."""
+    area = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
+    return corners if area @ normal > 0 else corners[::-1]
 
 
 def _axes(normal: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 2"]:

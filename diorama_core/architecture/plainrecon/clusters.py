@@ -37,13 +37,7 @@ SETTINGS = PlaneClusterSettings()
 def planar_clusters(
     points: Float[np.ndarray, "n 3"], normals: Float[np.ndarray, "n 3"], seed: int = 0
 ) -> Int[np.ndarray, "n"]:
-    """The planar piece that each point belongs to, largest direction first; -1 everywhere when there is none.
-
-    Args:
-        points: Of the empty room.
-        normals: Unit, toward the camera.
-        seed: Of K-means.
-    """
+    """The planar piece that each point belongs to, largest direction first; -1 everywhere when there is none."""
     if len(points) < MIN_POINTS:
         return np.full(len(points), -1)
     representatives, directions = _downsample(points, normals)

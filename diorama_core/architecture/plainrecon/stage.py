@@ -2,17 +2,20 @@
 
 It reads the measured depth of what no object hides; the publication reads a network's depth of an inpainted picture.
 As published it gives floor and walls only: what faces down is left out.
+
+ACDC's architecture (Dai et al. 2024), as planes as Diorama's supplement does to compare with it, has the same pieces:
+its publication's come from a network that is asked for "floor" and "wall". Each is bounded by the smallest rectangle,
+walls square to the floor. Nothing is joined and nothing reaches behind furniture.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.architecture.plainrecon.bounds import PlaneSheet, fit_sheet, join_walls, upright
+from diorama_core.architecture.plainrecon.bounds import PlaneSheet, counter_clockwise, fit_sheet, join_walls, upright
 from diorama_core.architecture.plainrecon.clusters import MIN_POINTS, planar_clusters
 from diorama_core.architecture.supports import resolve_supports
 from diorama_core.architecture.texture.colours import colour_planes, object_pixels
@@ -34,6 +37,8 @@ class PlainRecon:
     """Voxels, outliers, K-means on normals, growth, DBSCAN; RANSAC planes, smallest rectangles, joined corners."""
 
     seed: int = 0
+    method: RoomMethod = RoomMethod.PLAINRECON
+    """With `RoomMethod.ACDC` walls are not joined."""
 
     def reconstruct(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
@@ -46,65 +51,29 @@ class PlainRecon:
         Raises:
             ValueError: when the inputs hold no measured depth.
         """
-        return room_of_pieces(
-            inputs, objects, geometry, progress, seed=self.seed, method=RoomMethod.PLAINRECON, bound=_join_upright_walls
+        if inputs.depth_m is None:
+            raise ValueError(f"the room of {self.method.value} needs measured depth; use PhotoRoom for a photo alone")
+        progress.report(0.0, "Clustering the measured points by their normals")
+        hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
+        floor, pieces = floor_and_walls(measure_surface(inputs.depth_m, geometry.camera, hidden), self.seed)
+        progress.report(0.7, "Bounding the planes")
+        base = default_floor(geometry.camera.position) if floor is None else floor
+        walls = [upright(piece, base) for piece in pieces]
+        walls = walls if self.method is RoomMethod.ACDC else join_walls(base, walls)
+        planes = [plane_of("floor", base, GUESS_CONFIDENCE if floor is None else CONFIDENCE)]
+        planes += [plane_of(f"wall_{k}", w, CONFIDENCE) for k, w in enumerate(walls, 1)]
+        architecture = Architecture(colour_planes(tuple(planes), inputs.photo.rgb, geometry.camera, objects))
+        progress.report(1.0, "Floor and walls are bounded")
+        return ArchitectureEstimate(
+            architecture=architecture,
+            supports=resolve_supports(geometry, architecture),
+            confidence=float(np.mean([p.confidence for p in architecture.planes])),
+            source=RoomSource(self.method, walls_found=len(walls), floor_found=floor is not None),
         )
 
 
-def _join_upright_walls(floor: PlaneSheet, walls: list[PlaneSheet]) -> list[PlaneSheet]:
-    return join_walls(floor, [upright(wall, floor) for wall in walls])
-
-
-def room_of_pieces(
-    inputs: Inputs,
-    objects: tuple[DetectedObject, ...],
-    geometry: ObjectGeometry,
-    progress: Progress,
-    *,
-    seed: int,
-    method: RoomMethod,
-    bound: Callable[[PlaneSheet, list[PlaneSheet]], list[PlaneSheet]],
-) -> ArchitectureEstimate:
-    """A room of the planar pieces of measured depth that no object hides, as PlainRecon and ACDC make one.
-
-    Args:
-        inputs: with measured depth.
-        objects: what hides the room.
-        geometry: the camera, and the objects' supports.
-        progress: where it is reported and cancelling is noticed.
-        seed: of K-means.
-        method: what the room says it was made by.
-        bound: bounds walls, given the floor.
-
-    Raises:
-        ValueError: when the inputs hold no measured depth.
-    """
-    if inputs.depth_m is None:
-        raise ValueError(f"the room of {method.value} needs measured depth; use PhotoRoom for a photo alone")
-    progress.report(0.0, "Clustering the measured points by their normals")
-    hidden = object_pixels((inputs.photo.height, inputs.photo.width), objects)
-    floor, walls = floor_and_walls(measure_surface(inputs.depth_m, geometry.camera, hidden), seed)
-    progress.report(0.7, "Bounding the planes")
-    base = default_floor(geometry.camera.position) if floor is None else floor
-    planes = [plane_of("floor", base, GUESS_CONFIDENCE if floor is None else CONFIDENCE)]
-    planes += [plane_of(f"wall_{k}", w, CONFIDENCE) for k, w in enumerate(bound(base, walls), 1)]
-    architecture = Architecture(colour_planes(tuple(planes), inputs.photo.rgb, geometry.camera, objects))
-    progress.report(1.0, "Floor and walls are bounded")
-    return ArchitectureEstimate(
-        architecture=architecture,
-        supports=resolve_supports(geometry, architecture),
-        confidence=float(np.mean([p.confidence for p in architecture.planes])),
-        source=RoomSource(method, walls_found=len(walls), floor_found=floor is not None),
-    )
-
-
 def floor_and_walls(surface: MeasuredSurface, seed: int = 0) -> tuple[PlaneSheet | None, list[PlaneSheet]]:
-    """A rectangle around every planar piece that stands, and around the largest one that is level and looks up.
-
-    Args:
-        surface: measured points; those of objects are left out.
-        seed: of K-means.
-    """
+    """A rectangle around every planar piece that stands, and around the largest one that is level and looks up."""
     free = ~surface.is_object & (surface.normals != 0).any(axis=1)
     points, normals = surface.points[free], surface.normals[free]
     labels = planar_clusters(points, normals, seed)
@@ -132,9 +101,7 @@ def plane_of(name: str, sheet: PlaneSheet, confidence: float) -> Plane:
 
     Corners counter-clockwise seen from inside; a wall starts at its lower left.
     """
-    corners = sheet.corners
-    area = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
-    corners = corners if area @ sheet.normal > 0 else corners[::-1]
+    corners = counter_clockwise(sheet.corners, sheet.normal)
     if name != "floor":
         # Lower left seen from inside: lowest together with least along.
         along = np.cross([0.0, 0.0, 1.0], sheet.normal)

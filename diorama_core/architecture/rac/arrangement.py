@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from diorama_core.geometry.planes import signed_area
+from diorama_core.geometry.planes import clip_polygon, signed_area
 from diorama_core.geometry.vectors import unique_rows
 from diorama_core.scene.types import Camera
 
@@ -83,9 +83,8 @@ def inverse_depths(
 ) -> Float[np.ndarray, "p 3"]:
     """Per plane `n . x = offset` in the world, its inverse depth as a linear form of the pixel."""
     R, k = camera.T_world_camera[:3, :3], camera.intrinsics
-    local = (normals @ R) / np.where(
-        np.abs(offsets - normals @ camera.position) < 1e-9, 1e-9, offsets - normals @ camera.position
-    )[:, None]
+    away = offsets - normals @ camera.position
+    local = (normals @ R) / np.where(np.abs(away) < 1e-9, 1e-9, away)[:, None]
     x, y = local[:, 0] / k.fx, local[:, 1] / k.fy
     return np.stack([x, y, local[:, 2] - x * k.cx - y * k.cy], axis=1)
 
@@ -110,21 +109,9 @@ def arrangement(
         cut: list[tuple[np.ndarray, tuple[bool, ...]]] = []
         for corners, within in pieces:
             for positive in (True, False):
-                part = _part(corners, line.form if positive else -line.form)
+                form = line.form if positive else -line.form
+                part = clip_polygon(corners, form[:2], -float(form[2]))
                 if abs(signed_area(part)) > MIN_AREA_PX:
                     cut.append((part, (*within, positive)))
         pieces = cut
     return Arrangement(inverse, lines, tuple(Cell(corners, within) for corners, within in pieces))
-
-
-def _part(corners: Float[np.ndarray, "k 2"], form: Float[np.ndarray, "3"]) -> Float[np.ndarray, "m 2"]:
-    """What of a convex polygon lies where the form is positive (Sutherland-Hodgman)."""
-    side = corners @ form[:2] + form[2]
-    kept: list[np.ndarray] = []
-    for i in range(len(corners)):
-        j = (i + 1) % len(corners)
-        if side[i] >= 0:
-            kept.append(corners[i])
-        if (side[i] > 0 > side[j]) or (side[i] < 0 < side[j]):
-            kept.append(corners[i] + side[i] / (side[i] - side[j]) * (corners[j] - corners[i]))
-    return np.array(kept).reshape(-1, 2)

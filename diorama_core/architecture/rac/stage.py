@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from jaxtyping import Float
 from shapely.geometry import MultiPolygon, Polygon
 
+from diorama_core.architecture.plainrecon.bounds import counter_clockwise
 from diorama_core.architecture.rac.proposals import Proposals, proposals
 from diorama_core.architecture.rac.refinement import refine_layout
 from diorama_core.architecture.rac.search import RoomLayout, best_layout
@@ -100,19 +100,7 @@ def polygons(layout: RoomLayout, proposals: Proposals, camera: Camera) -> tuple[
         if role != "wall" and number:
             continue
         name = f"wall_{number + 1}" if role == "wall" else role
-        corners = _unproject(outline, cells.inverse_at(p, outline), camera)
-        planes.append(Plane(name, role, _inward(corners, proposals.normals[p]), confidence=CONFIDENCE))
+        corners = camera.rays(outline) / cells.inverse_at(p, outline)[:, None] + camera.position
+        polygon = counter_clockwise(corners, proposals.normals[p])
+        planes.append(Plane(name, role, polygon, confidence=CONFIDENCE))
     return tuple(sorted(planes, key=lambda plane: ("floor", "wall", "ceiling").index(plane.role)))
-
-
-def _unproject(
-    pixels: Float[np.ndarray, "n 2"], inverse: Float[np.ndarray, "n"], camera: Camera
-) -> Float[np.ndarray, "n 3"]:
-    k = camera.intrinsics
-    rays = np.stack([(pixels[:, 0] - k.cx) / k.fx, (pixels[:, 1] - k.cy) / k.fy, np.ones(len(pixels))], axis=1)
-    return (rays / inverse[:, None]) @ camera.T_world_camera[:3, :3].T + camera.position
-
-
-def _inward(corners: Float[np.ndarray, "n 3"], normal: Float[np.ndarray, "3"]) -> Float[np.ndarray, "n 3"]:
-    area = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
-    return corners if area @ normal > 0 else corners[::-1]

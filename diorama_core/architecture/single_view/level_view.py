@@ -74,13 +74,7 @@ class LevelView:
 
 
 def level_view(rgb: UInt8[np.ndarray, "h w 3"], cues: RoomCues, objects: tuple[DetectedObject, ...]) -> LevelView:
-    """The precomputed evidence for scoring walls by headings.
-
-    Args:
-        rgb: the photo.
-        cues: of the room, with the camera.
-        objects: what is not the room's.
-    """
+    """The precomputed evidence for scoring walls by headings."""
     camera = cues.camera
     low, high = view_headings(camera)
     edges = np.linspace(low, high, SETTINGS.headings + 1)

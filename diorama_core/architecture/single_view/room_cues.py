@@ -109,18 +109,22 @@ def gather_room_cues(
     middle = 0.5 * (segments[:, :2] + segments[:, 2:])
     directions, ray_axes, weights = _surface_rays(segments[free], axes[free], camera)
     hung = {o.id for o in objects if category(o.category).mount == "ceiling"}
-    solid = [c for c in cuboids if _category_of(c, objects) not in _WALL_CATEGORIES]
+    names = {c.object_id: UNKNOWN.name for c in cuboids} | {o.id: o.category for o in objects}
+    solid = [c for c in cuboids if names[c.object_id] not in _WALL_CATEGORIES]
+    portable = [names[c.object_id] in PORTABLE or category(names[c.object_id]).mount == "surface" for c in solid]
     corners = np.array([c.corners_world for c in solid]).reshape(-1, 8, 3)
-    backed = [c for c in cuboids if _category_of(c, objects) in BACKED]
+    backed = [c for c in cuboids if names[c.object_id] in BACKED]
     backs = np.array([c.corners_world for c in backed]).reshape(-1, 8, 3)
     oblique = oblique[~_lie_on_objects(oblique, standing, rgb.shape[:2])]
     slants = _slants(oblique, segments[free], camera, settings)
+    frame = (objects, rgb.shape[:2], map_scale, settings)
+    edge_maps = [_edge_map(segments[axes == axis], *frame, level=axis < 2) for axis in range(3)]
     return RoomCues(
         camera=camera,
         directions=directions,
         ray_axes=ray_axes,
         ray_weights=weights,
-        edge_maps=_edge_maps(segments, axes, objects, rgb.shape[:2], map_scale, settings),
+        edge_maps=np.stack(edge_maps),
         map_scale=map_scale,
         segment_rays=camera.rays(middle[free]),
         segment_axes=axes[free],
@@ -129,16 +133,13 @@ def gather_room_cues(
         object_weights=np.array(
             [max(c.confidence, 0.1) * (1.0 if c.foot_seen else settings.unseen_foot) for c in solid]
         ),
-        object_portable=np.array([_is_portable(c, objects) for c in solid], dtype=bool),
+        object_portable=np.array(portable, dtype=bool),
         backed_low=backs.min(axis=1),
         backed_high=backs.max(axis=1),
         backed_weights=np.array([c.confidence for c in backed]),
         hung_top_m=max((float(c.corners_world[:, 2].max()) for c in cuboids if c.object_id in hung), default=0.0),
         slants_rad=tuple(angle for angle, _ in slants),
-        slant_maps=tuple(
-            _edge_map(oblique[rows_of_direction], objects, rgb.shape[:2], map_scale, settings=settings)
-            for _, rows_of_direction in slants
-        ),
+        slant_maps=tuple(_edge_map(oblique[rows_of_direction], *frame) for _, rows_of_direction in slants),
     )
 
 
@@ -169,15 +170,6 @@ def _slants(
         settings.slant_share * everything, settings.slant_diagonals * float(np.hypot(k.width, k.height))
     )
     return [best] if enough else []
-
-
-def _is_portable(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> bool:
-    name = _category_of(cuboid, objects)
-    return name in PORTABLE or category(name).mount == "surface"
-
-
-def _category_of(cuboid: Cuboid, objects: tuple[DetectedObject, ...]) -> str:
-    return next((o.category for o in objects if o.id == cuboid.object_id), UNKNOWN.name)
 
 
 def _lie_on_objects(
@@ -211,33 +203,19 @@ def _surface_rays(
     return camera.rays(points.reshape(-1, 2)), np.repeat(axes, 3), weights / weights.sum()
 
 
-def _edge_maps(
-    segments: Float[np.ndarray, "n 4"],
-    axes: Int[np.ndarray, "n"],
-    objects: tuple[DetectedObject, ...],
-    shape: tuple[int, ...],
-    scale: float,
-    settings: RoomCueSettings,
-) -> Float32[np.ndarray, "3 hm wm"]:
-    """For each axis, how near the nearest segment along it is: a Gaussian of the distance, neutral on objects."""
-    return np.stack(
-        [
-            _edge_map(segments[axes == axis], objects, shape, scale, level=axis < 2, settings=settings)
-            for axis in range(3)
-        ]
-    )
-
-
 def _edge_map(
     segments: Float[np.ndarray, "n 4"],
     objects: tuple[DetectedObject, ...],
     shape: tuple[int, ...],
     scale: float,
+    settings: RoomCueSettings,
     *,
     level: bool = True,
-    settings: RoomCueSettings,
 ) -> Float32[np.ndarray, "hm wm"]:
-    """Edges of one direction's segments; level ones say less where they crowd, as bricks' and boards' do."""
+    """How near the nearest segment of one direction is: a Gaussian of the distance, neutral on objects.
+
+    Level ones say less where they crowd, as bricks' and boards' do.
+    """
     rows, columns = max(1, round(shape[0] * scale)), max(1, round(shape[1] * scale))
     sigma = settings.edge_sigma * float(np.hypot(rows, columns))
     canvas = np.full((rows, columns), 255, np.uint8)

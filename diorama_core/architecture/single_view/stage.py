@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
@@ -16,6 +17,7 @@ from diorama_core.architecture.single_view.wall_chain import (
     PhotoWalls,
     best_ceiling,
     best_chain,
+    corners_of,
     refine_chain,
 )
 from diorama_core.architecture.supports import resolve_supports
@@ -124,80 +126,52 @@ def _pieces(
     chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"], settings: RoomSearchSettings
 ) -> tuple[WallPiece, ...]:
     """The chain's walls as pieces that meet, with room for the objects that stand before them."""
-    view = scorer.view
-    eye = scorer.cues.camera.position[:2]
-    ends = view.edges_rad[chain.borders]
-    walls = _with_room(chain, scorer, sure, settings)
-    runs = [
-        Run(_as_candidate(walls, k, float(sure[k]), settings=settings), float(ends[k]), float(ends[k + 1]))
-        for k in range(len(chain.walls))
-    ]
-    for k in range(len(runs) - 1):
+    edges, eye = scorer.view.edges_rad, scorer.cues.camera.position[:2]
+    seen = _runs(chain.walls, edges[chain.borders], settings.measured - sure)
+    runs = _runs(_with_room(chain, seen, scorer, sure, settings), edges[chain.borders], settings.measured - sure)
+    for k, joined in enumerate(_joints(seen, eye)):
         corner = meeting_point(runs[k].wall, runs[k + 1].wall)
-        if corner is None or not _is_joined(chain, k, ends, eye, settings):
-            continue
-        at = float(heading(corner, eye))
-        runs[k], runs[k + 1] = replace(runs[k], last=at), replace(runs[k + 1], first=at)
-    return chain_runs(runs, (float(view.edges_rad[0]), float(view.edges_rad[-1])), eye)
+        if corner is not None and joined:
+            at = float(heading(corner, eye))
+            runs[k], runs[k + 1] = replace(runs[k], last=at), replace(runs[k + 1], first=at)
+    return chain_runs(runs, (float(edges[0]), float(edges[-1])), eye)
 
 
-def _as_candidate(walls: PhotoWalls, k: int, sure: float = 0.0, *, settings: RoomSearchSettings) -> WallCandidate:
-    return WallCandidate(
-        walls.normals[k], float(walls.offsets[k]), np.zeros(0, dtype=bool), settings.measured - sure, 1.0
-    )
+def _runs(walls: PhotoWalls, ends: Float[np.ndarray, "r1"], seen_through: Float[np.ndarray, "r"]) -> list[Run]:
+    known = zip(walls.normals, walls.offsets.tolist(), seen_through.tolist(), pairwise(ends.tolist()), strict=True)
+    nothing = np.zeros(0, dtype=bool)
+    return [Run(WallCandidate(normal, at, nothing, through, 1.0), *span) for normal, at, through, span in known]
 
 
 def _with_room(
-    chain: Chain, scorer: ChainScorer, sure: Float[np.ndarray, "r"], settings: RoomSearchSettings
+    chain: Chain, runs: list[Run], scorer: ChainScorer, sure: Float[np.ndarray, "r"], settings: RoomSearchSettings
 ) -> PhotoWalls:
     """The chain's walls, moved outward where the objects that protrude through them weigh more than what was seen.
 
     A wall that moves alone takes its corners out of the line of sight in which they were seen; moved as far in
     proportion, its neighbours retain them. That is done unless it contradicts the photo by more than a corner is worth.
     """
-    ends, eye = scorer.view.edges_rad[chain.borders], scorer.cues.camera.position[:2]
-    out = [
-        _push(
-            _as_candidate(chain.walls, k, settings=settings),
-            float(ends[k]),
-            float(ends[k + 1]),
-            scorer.cues,
-            float(sure[k]),
-            settings,
-        )
-        for k in range(len(chain.walls))
-    ]
+    eye = scorer.cues.camera.position[:2]
+    out = [_push(run, scorer.cues, certainty, settings) for run, certainty in zip(runs, sure.tolist(), strict=True)]
     apart = replace(chain.walls, offsets=chain.walls.offsets - np.array(out))
     if not any(out):
         return apart
     at_eye = chain.walls.normals @ eye
     farther = (apart.offsets - at_eye) / (chain.walls.offsets - at_eye)
-    joined = [_is_joined(chain, k, ends, eye, settings) for k in range(len(chain.walls) - 1)]
-    groups = np.cumsum([0, *(not one for one in joined)])
+    groups = np.cumsum([0, *(not joined for joined in _joints(runs, eye))])
     most = np.array([farther[groups == group].max() for group in groups])
     together = replace(chain.walls, offsets=at_eye + (chain.walls.offsets - at_eye) * most)
     cost = [best_chain(scorer, walls, chain.ceiling_m).cost for walls in (apart, together)]
     return together if cost[1] < cost[0] + settings.corner_cost else apart
 
 
-def _is_joined(
-    chain: Chain, k: int, ends: Float[np.ndarray, "r1"], eye: Float[np.ndarray, "2"], settings: RoomSearchSettings
-) -> bool:
-    """Whether a wall and the next one meet where the one ends."""
-    corner = meeting_point(
-        _as_candidate(chain.walls, k, settings=settings), _as_candidate(chain.walls, k + 1, settings=settings)
-    )
-    return corner is not None and bool(abs(heading(corner, eye) - ends[k + 1]) <= CORNER_SLACK_RAD)
+def _joints(runs: list[Run], eye: Float[np.ndarray, "2"]) -> list[bool]:
+    """Whether each wall and the next one meet where the one ends."""
+    corners = [(meeting_point(run.wall, following.wall), run.last) for run, following in pairwise(runs)]
+    return [c is not None and bool(abs(heading(c, eye) - end) <= CORNER_SLACK_RAD) for c, end in corners]
 
 
-def _push(
-    wall: WallCandidate,
-    first: float,
-    last: float,
-    cues: RoomCues,
-    sure: float,
-    settings: RoomSearchSettings = SETTINGS.search,
-) -> float:
+def _push(run: Run, cues: RoomCues, sure: float, settings: RoomSearchSettings = SETTINGS.search) -> float:
     """How far, in metres, a wall gives way to the objects within its headings.
 
     Every object pulls by its confidence as far as it protrudes, and by the share of it that does, since where it ends
@@ -208,10 +182,10 @@ def _push(
     outs, weights = [0.0], [0.0]
     known = zip(cues.object_low, cues.object_high, cues.object_weights, cues.object_portable, strict=True)
     for low, high, weight, portable in known:
-        corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])])
+        corners = corners_of(low, high)
         towards = heading(corners, eye)
-        through = wall.offset - corners @ wall.normal
-        beside = towards.max() < first or towards.min() > last or np.ptp(towards) > np.pi
+        through = run.wall.offset - corners @ run.wall.normal
+        beside = towards.max() < run.first or towards.min() > run.last or np.ptp(towards) > np.pi
         elsewhere = portable and through.min() > 0.0
         if not beside and not elsewhere and 0.0 < through.max() < settings.max_push_m:
             outs.append(float(through.max()) + settings.clearance_m)
@@ -240,15 +214,15 @@ def _planes(
     ceiling = CeilingPiece(np.array([0.0, 0.0, -1.0]), -top_m, np.inf)
     planes = room_planes(pieces, (ceiling,), geometry.camera, top_m, settings.floor_confidence, openings)
     seen = visible_planes(planes, geometry.camera, settings.ceiling_step)
-    walls = []
-    for index, plane in enumerate(planes):
-        if plane.role == "ceiling" and not hung and float((seen == index).mean()) < settings.min_visible_share:
-            continue
-        walls.append(plane)
+    shown = [hung or float((seen == index).mean()) >= settings.min_visible_share for index in range(len(planes))]
     known = [None if p.candidate is None else settings.measured - p.candidate.seen_through for p in pieces]
     mean = float(np.mean([c for c in known if c is not None]))
     sure = {f"wall_{k}": GUESS_CONFIDENCE if c is None else c for k, c in enumerate(known, 1)} | {"ceiling": mean}
-    return tuple(replace(p, confidence=sure.get(p.id, p.confidence)) for p in walls)
+    return tuple(
+        replace(p, confidence=sure.get(p.id, p.confidence))
+        for p, is_shown in zip(planes, shown, strict=True)
+        if p.role != "ceiling" or is_shown
+    )
 
 
 def _source(

@@ -24,6 +24,7 @@ from diorama_core.architecture.single_view.room_cues import (
     RoomCues,
 )
 from diorama_core.architecture.single_view.settings import SETTINGS, PhotoRoomSettings
+from diorama_core.architecture.walls.wall_path import cheapest_path, corner_headings
 
 FINE = np.linspace(-0.08, 0.08, 9)
 
@@ -121,11 +122,8 @@ class ChainScorer:
         gap = walls.offsets - walls.normals @ self.cues.camera.position[:2]
         with np.errstate(divide="ignore", invalid="ignore"):
             distance = gap[:, None] / slope
-        return np.where(
-            (slope < -self.settings.search.grazing) & (distance < self.settings.search.reach_m),
-            distance,
-            np.inf,
-        )
+        s = self.settings.search
+        return np.where((slope < -s.grazing) & (distance < s.reach_m), distance, np.inf)
 
     @cached_property
     def _sums(self) -> tuple[Float[np.ndarray, "m k1"], Float[np.ndarray, "m k1"], Float[np.ndarray, "3 m k1"]]:
@@ -148,34 +146,25 @@ class ChainScorer:
 
     def support(self, chain: Chain) -> Float[np.ndarray, "r"]:
         """How far each wall of a chain is seen, 0 to 1: foot and top as edges, and colours that change at the foot."""
-        reach = self.reach(chain.walls)
-        near = np.where(np.isfinite(reach), reach, self.settings.search.farthest_m)
+        reach, s = self.reach(chain.walls), self.settings.search
+        near = np.where(np.isfinite(reach), reach, s.farthest_m)
         sides = [self._edge(chain.walls, near, height) for height in (0.0, chain.ceiling_m)]
         skirting = self._skirting(chain.walls, near)
         sides.append((skirting, np.where(skirting > 0.0, sides[0][1], 0.0)))
         eye = float(self.cues.camera.position[2])
-        colour, known = (_cumulative_sum(x) for x in (self.view.floor_ratio * self.view.share, self._colour_weights()))
+        weights = np.where(self.view.floor_ratio != 0, self.view.share, 0.0)
+        colour, known = (_cumulative_sum(x) for x in (self.view.floor_ratio * self.view.share, weights))
         supports = []
         for run, (first, last) in enumerate(pairwise(chain.borders)):
             columns = slice(first, last)
             over, length = (sum(float(side[k][run, columns].sum()) for side in sides) for k in (0, 1))
-            edge = (EDGE_THRESHOLD + over / max(length, 1e-9)) * min(1.0, length / self.settings.search.enough_edge)
+            edge = (EDGE_THRESHOLD + over / max(length, 1e-9)) * min(1.0, length / s.enough_edge)
             foot = self.view.row_of(-eye / near[run : run + 1, columns])
             below, every = (_upto(x[columns], foot)[0] for x in (colour, known))
             apart = float((2.0 * below - colour[columns, -1]).sum()) / max(float(known[columns, -1].sum()), 1e-9)
-            both = (
-                min(float(every.sum()), float((known[columns, -1] - every).sum())) > self.settings.search.enough_colour
-            )
-            supports.append(
-                min(
-                    1.0,
-                    self.settings.search.edge_trust * edge + self.settings.search.colour_trust * max(apart, 0.0) * both,
-                )
-            )
+            both = min(float(every.sum()), float((known[columns, -1] - every).sum())) > s.enough_colour
+            supports.append(min(1.0, s.edge_trust * edge + s.colour_trust * max(apart, 0.0) * both))
         return np.array(supports)
-
-    def _colour_weights(self) -> Float[np.ndarray, "m k"]:
-        return np.where(self.view.floor_ratio != 0, self.view.share, 0.0)
 
     def _edge(
         self, walls: PhotoWalls, near: Float[np.ndarray, "w m"], height_m: float
@@ -208,51 +197,36 @@ class ChainScorer:
 
         Without it the board's upper edge is taken for the foot of a wall that is farther away as readily as its lower.
         """
-        return np.maximum(
-            np.max([self._edge(walls, near, height)[0] for height in self.settings.search.skirtings_m], axis=0), 0.0
-        )
+        edges = [self._edge(walls, near, height)[0] for height in self.settings.search.skirtings_m]
+        return np.maximum(np.max(edges, axis=0), 0.0)
 
     def _objects(self, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
         """Objects that would stick through a wall, in the headings of their corners."""
-        e = self.cues
+        e, s = self.cues, self.settings.search
         total = np.zeros(near.shape)
         if len(e.object_low) == 0:
             return total
         weights = e.object_weights / e.object_weights.sum()
-        eye = e.camera.position[:2]
-        edges = self.view.edges_rad
         for low, high, weight in zip(e.object_low, e.object_high, weights, strict=True):
-            corners = np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])]) - eye
-            for x, y in corners:
-                column = int(np.searchsorted(edges, np.arctan2(x, y))) - 1
+            of_corner = self.settings.cues.object_weight * weight / 4.0
+            for x, y in corners_of(low, high) - e.camera.position[:2]:
+                column = int(np.searchsorted(self.view.edges_rad, np.arctan2(x, y))) - 1
                 if 0 <= column < near.shape[1]:
-                    away = np.hypot(x, y)
-                    out = away * (1.0 - self.settings.search.unsure_share) - near[:, column]
-                    total[:, column] += (
-                        self.settings.cues.object_weight
-                        * weight
-                        / 4.0
-                        * np.clip(out / self.settings.search.protrusion_m, 0.0, 2.0)
-                    )
+                    out = np.hypot(x, y) * (1.0 - s.unsure_share) - near[:, column]
+                    total[:, column] += of_corner * np.clip(out / s.protrusion_m, 0.0, 2.0)
         return total
 
     def _backs(self, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
         """Beds, storage and stoves stand at walls: a wall is where the sight through one leaves it."""
-        e, v = self.cues, self.view
+        e, v, s = self.cues, self.view, self.settings.search
         total = np.zeros(near.shape)
         across = np.stack([np.sin(v.middles_rad), np.cos(v.middles_rad)], axis=-1)
-        backed = zip(e.backed_low, e.backed_high, e.backed_weights, strict=True)
-        for low, high, weight in backed:
+        for low, high, weight in zip(e.backed_low, e.backed_high, e.backed_weights, strict=True):
             left = leaves(e.camera.position[:2], across, low[:2], high[:2])
             behind = np.flatnonzero(np.isfinite(left))
             if len(behind):
-                apart = np.log(near[:, behind] / left[behind]) / self.settings.search.back_log_sigma
-                total[:, behind] += (
-                    self.settings.search.back_weight
-                    * weight
-                    / len(behind)
-                    * np.minimum(apart**2, self.settings.search.back_cap)
-                )
+                apart = np.log(near[:, behind] / left[behind]) / s.back_log_sigma
+                total[:, behind] += s.back_weight * weight / len(behind) * np.minimum(apart**2, s.back_cap)
         return total
 
     def _usual(self, walls: PhotoWalls, near: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:
@@ -269,54 +243,44 @@ class ChainScorer:
         odd = float(0.5 * min((np.log(ceiling_m / PRIOR_MEDIAN_M[2]) / PRIOR_LOG_SIGMA[2]) ** 2, 9.0))
         e = self.cues
         highest = max(float(e.object_high[:, 2].max()) if len(e.object_high) else 0.0, e.hung_top_m)
-        return self.settings.cues.prior_weight * odd + 0.5 * float(
-            np.clip((highest - ceiling_m) / self.settings.search.protrusion_m, 0.0, 2.0)
-        )
+        through = np.clip((highest - ceiling_m) / self.settings.search.protrusion_m, 0.0, 2.0)
+        return self.settings.cues.prior_weight * odd + 0.5 * float(through)
 
     def going_over(self, walls: PhotoWalls, ceiling_m: float) -> Float[np.ndarray, "b w w"]:
         """Cost of going from each wall to each other at the inner borders of the headings."""
-        v = self.view
+        v, s = self.view, self.settings.search
         borders = v.edges_rad[1:-1]
         reach = self._reach_at(walls, borders).T
         nearest = np.where(np.isfinite(reach), reach, 50.0)
         eye = float(self.cues.camera.position[2])
         summed = _cumulative_sum(v.upright[1:-1])
         seen = _upto_rows(summed, v.row_of((ceiling_m - eye) / nearest)) - _upto_rows(summed, v.row_of(-eye / nearest))
-        seen = self.settings.search.upright_weight * np.maximum(seen, 0.0)
+        seen = s.upright_weight * np.maximum(seen, 0.0)
         width = float(v.edges_rad[1] - v.edges_rad[0])
-        corner = _corner_headings(walls, self.cues.camera.position[:2])
-        folded = np.where(_folds_in(walls), self.settings.search.corner_cost, self.settings.search.protruding_cost)
+        corner = corner_headings(walls.normals, walls.offsets, self.cues.camera.position[:2])
+        a, b = walls.normals[:, None], walls.normals[None]
+        folds_in = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0] < 0
+        folded = np.where(folds_in, s.corner_cost, s.protruding_cost)
         cost = np.empty((len(borders), *corner.shape))
         for k, border in enumerate(borders):  # one at a time stays in the processor's cache
             edge = np.where(nearest[k, :, None] <= nearest[k], seen[k, :, None], seen[k])
-            usual = np.where(
-                np.abs(corner - border) < self.settings.search.corner_bins * width,
-                folded,
-                self.settings.search.jump_cost,
-            )
-            np.maximum(usual - edge, self.settings.search.min_share * usual, out=cost[k])
+            usual = np.where(np.abs(corner - border) < s.corner_bins * width, folded, s.jump_cost)
+            np.maximum(usual - edge, s.min_share * usual, out=cost[k])
         same = np.arange(len(walls))
         cost[:, same, same] = 0.0
         return np.asarray(cost)
 
 
+def corners_of(low: Float[np.ndarray, "3"], high: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4 2"]:
+    """Corners in plan of a box along the axes."""
+    return np.array([[x, y] for x in (low[0], high[0]) for y in (low[1], high[1])])
+
+
 def best_chain(scorer: ChainScorer, walls: PhotoWalls, ceiling_m: float) -> Chain:
-    """The cheapest path of walls over the headings (Viterbi)."""
-    costs, over = scorer.costs(walls, ceiling_m), scorer.going_over(walls, ceiling_m)
-    count = costs.shape[1]
-    total, came_from = costs[:, 0].copy(), np.zeros((count, len(walls)), dtype=int)
-    for number in range(1, count):
-        step = total[:, None] + over[number - 1]
-        came_from[number] = step.argmin(axis=0)
-        total = step[came_from[number], np.arange(len(walls))] + costs[:, number]
-    labels = np.zeros(count, dtype=int)
-    labels[-1] = int(total.argmin())
-    for number in range(count - 1, 0, -1):
-        labels[number - 1] = came_from[number, labels[number]]
-    breaks = np.array([0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), count])
-    return Chain(
-        walls.select(labels[breaks[:-1]]), breaks, ceiling_m, float(total.min()) + scorer.ceiling_prior(ceiling_m)
-    )
+    """The cheapest path of walls over the headings."""
+    over = scorer.going_over(walls, ceiling_m)
+    leading, breaks, cost = cheapest_path(scorer.costs(walls, ceiling_m), lambda number: over[number - 1])
+    return Chain(walls.select(leading), breaks, ceiling_m, cost + scorer.ceiling_prior(ceiling_m))
 
 
 def refine_chain(scorer: ChainScorer, chain: Chain, heights_m: Float[np.ndarray, "c"]) -> Chain:
@@ -394,20 +358,3 @@ def _upto_rows(summed: Float[np.ndarray, "m k1"], rows: Float[np.ndarray, "m w"]
     return np.asarray(
         np.take_along_axis(summed, below, axis=1) * (1.0 - part) + np.take_along_axis(summed, below + 1, axis=1) * part
     )
-
-
-def _corner_headings(walls: PhotoWalls, eye: Float[np.ndarray, "2"]) -> Float[np.ndarray, "w w"]:
-    """Heading of the corner of every two walls; `nan` for nearly parallel ones."""
-    offsets = walls.offsets - walls.normals @ eye
-    a, b = walls.normals[:, None], walls.normals[None]
-    determinant = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    safe = np.where(np.abs(determinant) < 0.17, np.nan, determinant)
-    x = (offsets[:, None] * b[..., 1] - offsets[None, :] * a[..., 1]) / safe
-    y = (a[..., 0] * offsets[None, :] - b[..., 0] * offsets[:, None]) / safe
-    return np.asarray(np.arctan2(x, y))
-
-
-def _folds_in(walls: PhotoWalls) -> np.ndarray:
-    """Whether the corner from a wall on the left to one on the right is an inner corner of the room."""
-    a, b = walls.normals[:, None], walls.normals[None]
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0] < 0)

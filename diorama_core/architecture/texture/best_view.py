@@ -15,9 +15,14 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, UInt8
 
-from diorama_core.architecture.texture.continuation import complete_texture
-from diorama_core.architecture.texture.level_light import level_light
-from diorama_core.architecture.texture.plane_textures import PhotoView, PlaneView, RoomPicture, is_enough, texel_points
+from diorama_core.architecture.texture.plane_textures import (
+    PhotoView,
+    PlaneView,
+    RoomPicture,
+    is_enough,
+    plane_picture,
+    texel_points,
+)
 from diorama_core.architecture.texture.quilting import broad_shading
 from diorama_core.scene.types import Architecture
 
@@ -75,12 +80,8 @@ def best_view_textures(
         chosen = [(views[k], gains[k], sharpness[k]) for k in sorted(views)]
         colours, owned, is_covered = _blend_views(chosen, pixel_m)
         if is_covered.any() and owned.any():
-            ground = plane.role == "floor"
-            colours = level_light(colours, owned, pixel_m) if ground else colours
             sharp = np.any([v.sharp for v in views.values()], axis=0)
-            textures[plane.id] = complete_texture(
-                colours, is_covered, plane.colour, pixel_m, owned, ground=ground, sharp=sharp
-            )
+            textures[plane.id] = plane_picture(plane, colours, is_covered, pixel_m, owned, sharp)
     return textures
 
 
@@ -96,14 +97,8 @@ def exposure_gains(planes: Sequence[tuple[Mapping[int, PlaneView], float]], coun
         ratios = [_ratios(views[a], views[b], m) for views, m in planes if a in views and b in views]
         joined = np.concatenate(ratios) if ratios else np.zeros((0, 3))
         if len(joined) >= SETTINGS.min_common:
-            rows.append(
-                (
-                    a,
-                    b,
-                    float(np.sqrt(min(len(joined), SETTINGS.enough_common) / SETTINGS.enough_common)),
-                    np.median(joined, 0),
-                )
-            )
+            weight = float(np.sqrt(min(len(joined), SETTINGS.enough_common) / SETTINGS.enough_common))
+            rows.append((a, b, weight, np.median(joined, 0)))
     A = np.zeros((len(rows) + count, count))
     target = np.zeros((len(rows) + count, 3))
     for row, (a, b, weight, ratio) in enumerate(rows):
@@ -127,12 +122,7 @@ def _ratios(a: PlaneView, b: PlaneView, pixel_m: float) -> Float[np.ndarray, "n 
 def _blend_views(
     views: Sequence[tuple[PlaneView, Float[np.ndarray, "3"], float]], pixel_m: float
 ) -> tuple[Float32[np.ndarray, "h w 3"], Bool[np.ndarray, "h w"], Bool[np.ndarray, "h w"]]:
-    """Colours, which of them are the plane's own material, and where any photo sees it.
-
-    Args:
-        views: Each photo's with the gains of its colours and its pixels for each radian squared.
-        pixel_m: Size of a texel.
-    """
+    """Colours, which of them are the plane's own material, and where any photo sees it."""
     scores = np.stack([_score(view, pixel_m) * sharp for view, _, sharp in views])
     best, is_covered = scores.argmax(axis=0), scores.max(axis=0) > 0
     shape = is_covered.shape

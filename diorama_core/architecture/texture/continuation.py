@@ -156,12 +156,7 @@ def _pull_push(
 
 
 def is_gaussian(detail: Float32[np.ndarray, "h w 3"], sample: Bool[np.ndarray, "h w"]) -> bool:
-    """Whether a texture's detail is distributed about normally, so that its covariance says how it looks.
-
-    Args:
-        detail: Colours without their broad shading.
-        sample: The texels that show the texture.
-    """
+    """Whether a texture's detail is distributed about normally, so that its covariance says how it looks."""
     grey = detail[sample].mean(axis=-1, dtype=np.float64)
     if len(grey) < 2 or not grey.var() > 0.0:
         return False
@@ -170,12 +165,7 @@ def is_gaussian(detail: Float32[np.ndarray, "h w 3"], sample: Bool[np.ndarray, "
 
 
 def has_lines(detail: Float32[np.ndarray, "h w 3"], sample: Bool[np.ndarray, "h w"]) -> bool:
-    """Whether a texture has gaps between boards or tiles: thin lines that are darker, or lighter, than all the rest.
-
-    Args:
-        detail: Colours without their broad shading.
-        sample: The texels that show the texture.
-    """
+    """Whether a texture has gaps between boards or tiles: thin lines that are darker, or lighter, than all the rest."""
     grey = (detail - broad_shading(detail, sample, LINE_PX))[sample].mean(axis=-1, dtype=np.float64)
     if len(grey) < 2 or not grey.var() > 0.0:
         return False

@@ -181,13 +181,6 @@ def _with_pattern(
 ) -> tuple[Bool[np.ndarray, "h w"], list[Bool[np.ndarray, "h w"]]]:
     """The texels of the main colour with those of colours that alternate with it, and texels of each other colour that
     the main one may have in another light.
-
-    Args:
-        is_floor: texels of the main colour.
-        picture: CIE Lab of what is seen.
-        seen_at: rows and columns of the seen texels.
-        main: the main colour.
-        pixel_m: size of a texel.
     """
     rows, columns = seen_at
     lab, others = picture[rows, columns].astype(np.float64), []

@@ -39,13 +39,7 @@ SETTINGS = LevelLightSettings()
 def level_light(
     colours: Float32[np.ndarray, "h w 3"], is_plane: Bool[np.ndarray, "h w"], pixel_m: float
 ) -> Float32[np.ndarray, "h w 3"]:
-    """The colours of a floor as even light shows them; meaningful where they are its own.
-
-    Args:
-        colours: 0 to 255.
-        is_plane: which texels show the floor's material.
-        pixel_m: size of a texel.
-    """
+    """The colours of a floor as even light shows them; meaningful where they are its own."""
     if not is_plane.any():
         return colours
     finer = broad_shading(colours, is_plane, SETTINGS.fine_m / pixel_m)

@@ -139,12 +139,27 @@ def plane_textures(
         points, pixel_m = texel_points(plane)
         seen = view.plane_view(plane, architecture.planes, points, pixel_m)
         if seen is not None and is_enough(seen.shown, pixel_m, plane):
-            ground = plane.role == "floor"
-            colours = level_light(seen.colours, seen.own, pixel_m) if ground else seen.colours
-            textures[plane.id] = complete_texture(
-                colours, seen.seen, plane.colour, pixel_m, seen.own, ground=ground, sharp=seen.sharp
-            )
+            textures[plane.id] = plane_picture(plane, seen.colours, seen.seen, pixel_m, seen.own, seen.sharp)
     return textures
+
+
+def plane_picture(
+    plane: Plane,
+    colours: Float32[np.ndarray, "h w 3"],
+    seen: Bool[np.ndarray, "h w"],
+    pixel_m: float,
+    is_plane: Bool[np.ndarray, "h w"],
+    sharp: Bool[np.ndarray, "h w"],
+) -> UInt8[np.ndarray, "h w 3"]:
+    """The picture of a plane, completed; a floor's without the photo's light.
+
+    Args:
+        plane: One of the room's.
+        colours, seen, pixel_m, is_plane, sharp: As for `continuation.complete_texture`.
+    """
+    ground = plane.role == "floor"
+    colours = level_light(colours, is_plane, pixel_m) if ground else colours
+    return complete_texture(colours, seen, plane.colour, pixel_m, is_plane, ground=ground, sharp=sharp)
 
 
 class PhotoView:
@@ -259,12 +274,6 @@ def _foreign(
     """Texels unlike the wall's own colour: objects nobody pointed at, posters.
 
     Its own colour is the one that covers much of the photo and is about what was expected.
-
-    Args:
-        colours: 0 to 255.
-        seen: Which texels are.
-        weight: How much of the photo each texel covers.
-        expected: About the plane's colour, 0 to 1.
     """
     if not seen.any():
         return np.zeros(seen.shape, dtype=bool)

@@ -219,12 +219,7 @@ MIN_COARSE_SIGMA = 6.0
 
 
 def wide_blur(picture: Float32[np.ndarray, "h w *c"], sigma_px: float) -> Float32[np.ndarray, "h w *c"]:
-    """The picture blurred by a Gaussian.
-
-    Args:
-        picture: Of up to four channels.
-        sigma_px: Its standard deviation.
-    """
+    """The picture blurred by a Gaussian."""
     height, width = picture.shape[:2]
     step = int(sigma_px / MIN_COARSE_SIGMA)
     if step < 2:

@@ -108,10 +108,8 @@ def floor_outline(pieces: tuple[WallPiece, ...], camera: Camera, settings: WallS
         chain += [piece.start, piece.end]
     x, y = camera.position[:2]
     behind = min(y - settings.behind_camera_m, *(float(p[1]) for p in (chain[0], chain[-1])))
-    right, left = (
-        max(float(chain[-1][0]), x + settings.beside_camera_m),
-        min(float(chain[0][0]), x - settings.beside_camera_m),
-    )
+    right = max(float(chain[-1][0]), x + settings.beside_camera_m)
+    left = min(float(chain[0][0]), x - settings.beside_camera_m)
     corners = _distinct([*chain, np.array([right, behind]), np.array([left, behind])])
     outline = np.array(corners)[::-1]
     if is_simple(outline):

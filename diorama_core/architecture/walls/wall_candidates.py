@@ -86,13 +86,7 @@ def find_walls(surface: MeasuredSurface, top_m: float) -> list[WallCandidate]:
 
 
 def same_wall(surface: MeasuredSurface, minor: WallCandidate, major: WallCandidate) -> bool:
-    """Whether the smaller candidate's points lie on the larger one too.
-
-    Args:
-        surface: the measured points.
-        minor: the smaller candidate.
-        major: the larger one.
-    """
+    """Whether the smaller candidate's points lie on the larger one too."""
     near = np.abs(surface.points[minor.inliers, :2] @ major.normal - major.offset)
     near = near < tolerance_m(surface.depth_m[minor.inliers])
     return bool(near.mean() > SETTINGS.same_share and minor.normal @ major.normal > np.cos(APART_RAD))
@@ -224,18 +218,14 @@ def fit_line(
         normal = turned if turned @ normal > 0 else -turned
         offset = float(centre @ normal)
     length = float(np.ptp(points[core] @ np.array([-normal[1], normal[0]])))
-    axis = _axis_aligned_line(
-        points, weights, normal, noise, MAX_SNAP_RAD + float(np.arctan2(SETTINGS.narrow_slack_m, length))
-    )
+    max_rad = MAX_SNAP_RAD + float(np.arctan2(SETTINGS.narrow_slack_m, length))
+    axis = _axis_aligned_line(points, weights, normal, noise, max_rad)
     if axis is None:
         return normal, offset
     tight = SETTINGS.tight_m + SETTINGS.tight_per_noise_m * noise
     agree, at_axis = (weights[np.abs(points @ n - o) < tight].sum() for n, o in ((normal, offset), axis))
-    return (
-        axis
-        if at_axis > (SETTINGS.axis_share if length > SETTINGS.narrow_m else SETTINGS.narrow_share) * agree
-        else (normal, offset)
-    )
+    share = SETTINGS.axis_share if length > SETTINGS.narrow_m else SETTINGS.narrow_share
+    return axis if at_axis > share * agree else (normal, offset)
 
 
 def _axis_aligned_line(

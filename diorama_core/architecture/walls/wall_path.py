@@ -8,6 +8,7 @@ through.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -95,15 +96,11 @@ def wall_runs(
 
 
 def _bin_headings(surface: MeasuredSurface, view: tuple[float, float]) -> _Headings:
-    edges = np.linspace(view[0], view[1], SETTINGS.heading_bins + 1)
-    of_point = ((heading(surface.points[:, :2], surface.camera_position[:2]) - view[0]) / (edges[1] - edges[0])).astype(
-        int
-    )
-    return _Headings(
-        edges,
-        of_point.clip(0, SETTINGS.heading_bins - 1),
-        surface.grid_rows * surface.grid_columns / SETTINGS.heading_bins,
-    )
+    bins = SETTINGS.heading_bins
+    edges = np.linspace(view[0], view[1], bins + 1)
+    headings = heading(surface.points[:, :2], surface.camera_position[:2])
+    of_point = ((headings - view[0]) / (edges[1] - edges[0])).astype(int).clip(0, bins - 1)
+    return _Headings(edges, of_point, surface.grid_rows * surface.grid_columns / bins)
 
 
 def _cheapest(surface: MeasuredSurface, walls: list[WallCandidate], headings: _Headings, top_m: float) -> list[Run]:
@@ -112,21 +109,34 @@ def _cheapest(surface: MeasuredSurface, walls: list[WallCandidate], headings: _H
         [_wall_costs(surface, w, headings, top_m) for w in walls]
         + [np.full(SETTINGS.heading_bins, SETTINGS.unknown_cost)]
     )
-    total, came_from = costs[:, 0].copy(), np.zeros((SETTINGS.heading_bins, len(costs)), dtype=int)
-    for number in range(1, SETTINGS.heading_bins):
-        step = total[:, None] + _going_over(walls, headings, number, surface.camera_position[:2])
+    origin = surface.camera_position[:2]
+    leading, breaks, _ = cheapest_path(costs, lambda number: _going_over(walls, headings, number, origin))
+    edges = headings.edges[breaks].tolist()
+    spans = zip(leading, pairwise(edges), strict=True)
+    return [Run(walls[label], first, last) for label, (first, last) in spans if label < len(walls)]
+
+
+def cheapest_path(
+    costs: Float[np.ndarray, "w m"], going_over: Callable[[int], Float[np.ndarray, "w w"]]
+) -> tuple[Int[np.ndarray, "r"], Int[np.ndarray, "r1"], float]:
+    """The cheapest labels of all headings (Viterbi): those of the runs, the runs' first headings and the end, the cost.
+
+    Args:
+        costs: of every label in every heading.
+        going_over: cost of going from each label to each other at the border before a heading.
+    """
+    count = costs.shape[1]
+    total, came_from = costs[:, 0].copy(), np.zeros((count, len(costs)), dtype=int)
+    for number in range(1, count):
+        step = total[:, None] + going_over(number)
         came_from[number] = step.argmin(axis=0)
-        total = step.min(axis=0) + costs[:, number]
-    labels = np.zeros(SETTINGS.heading_bins, dtype=int)
+        total = step[came_from[number], np.arange(len(costs))] + costs[:, number]
+    labels = np.zeros(count, dtype=int)
     labels[-1] = int(total.argmin())
-    for number in range(SETTINGS.heading_bins - 1, 0, -1):
+    for number in range(count - 1, 0, -1):
         labels[number - 1] = came_from[number, labels[number]]
-    breaks = [0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), SETTINGS.heading_bins]
-    return [
-        Run(walls[labels[a]], float(headings.edges[a]), float(headings.edges[b]))
-        for a, b in pairwise(breaks)
-        if labels[a] < len(walls)
-    ]
+    breaks = np.array([0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), count])
+    return labels[breaks[:-1]], breaks, float(total.min())
 
 
 def _wall_costs(
@@ -198,16 +208,18 @@ def _going_over(
         apart = np.abs(reach[:, None] - reach[None, :])
         nearest = np.minimum(reach[:, None], reach[None, :])
         meet = apart < SETTINGS.meet_m + SETTINGS.meet_per_m * nearest
-    meet |= np.abs(_corner_headings(walls, origin) - float(at[0])) < SETTINGS.corner_bins * width
+    corners = corner_headings(np.array([w.normal for w in walls]), np.array([w.offset for w in walls]), origin)
+    meet |= np.abs(corners - float(at[0])) < SETTINGS.corner_bins * width
     costs[:count, :count] = np.where(meet, SETTINGS.corner_cost, SETTINGS.open_end_cost)
     np.fill_diagonal(costs, 0.0)
     return costs
 
 
-def _corner_headings(walls: list[WallCandidate], origin: Float[np.ndarray, "2"]) -> Float[np.ndarray, "w w"]:
-    """Heading of the corner of every two walls, `nan` for nearly parallel ones and corners behind the camera."""
-    normals = np.array([w.normal for w in walls])
-    offsets = np.array([w.offset for w in walls]) - normals @ origin
+def corner_headings(
+    normals: Float[np.ndarray, "w 2"], offsets: Float[np.ndarray, "w"], origin: Float[np.ndarray, "2"]
+) -> Float[np.ndarray, "w w"]:
+    """Heading of the corner of every two walls, `nan` for nearly parallel ones."""
+    offsets = offsets - normals @ origin
     a, b = normals[:, None], normals[None, :]
     determinant = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     safe = np.where(np.abs(determinant) < 0.17, np.nan, determinant)

@@ -9,7 +9,6 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 from jaxtyping import Float32
 
-from diorama_core.architecture.acdc import AcdcRoom
 from diorama_core.architecture.plainrecon.stage import PlainRecon
 from diorama_core.architecture.rac.stage import RenderAndCompareRoom
 from diorama_core.artefacts import Inputs
@@ -23,6 +22,7 @@ from diorama_core.pipeline.runner import Runner
 from diorama_core.pipeline.stages import embedded_stages
 from diorama_core.progress import SILENT, Progress
 from diorama_core.protocols import ArchitectureStage
+from diorama_core.provenance import RoomMethod
 from diorama_core.synthesis.artefacts import photo_only
 from diorama_core.synthesis.truth import TruthView
 
@@ -91,7 +91,7 @@ def run(
             ("PlainRecon as published", PlainRecon(), (*depths, ("depth of the empty room", _empty(view)))),
             ("RaC", RenderAndCompareRoom(), depths),
             ("RaC without refinement", RenderAndCompareRoom(refine=False), depths),
-            ("ACDC", AcdcRoom(), depths),
+            ("ACDC", PlainRecon(method=RoomMethod.ACDC), depths),
         )
         rows: tuple[tuple[str, Inputs, ArchitectureStage | None], ...] = (
             *((depth, inputs, None) for depth, inputs in depths),

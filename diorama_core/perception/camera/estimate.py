@@ -11,7 +11,7 @@ from diorama_core.artefacts import CameraEstimate, CameraHypothesis, Inputs, Pho
 from diorama_core.geometry.rotations import CameraAttitude
 from diorama_core.geometry.segments import line_segments_px
 from diorama_core.perception.camera.frames import frame_difference_rad
-from diorama_core.perception.camera.gravity_depth import GravityFrame, frame_from_depth
+from diorama_core.perception.camera.gravity_depth import frame_from_depth
 from diorama_core.perception.camera.vanishing import (
     SETTINGS,
     FrameFit,
@@ -145,26 +145,14 @@ def _with_depth(estimate: CameraEstimate, inputs: Inputs, count: int, settings: 
     others = [
         h for h in estimate.hypotheses if frame_difference_rad(h.R_world_camera, frame.R_world_camera) > DISTINCT_RAD
     ]
-    return CameraEstimate(
-        hypotheses=(reading, *others[: count - 1]),
-        confidence=_depth_confidence(frame),
-        source=_depth_source(frame, estimate.source.focal, settings),
-        height_m=frame.height_m,
-    )
-
-
-def _depth_confidence(frame: GravityFrame) -> float:
-    if frame.height_m is None:
-        return 0.6
-    return 0.8 + 0.2 * _unit(frame.level_share / 0.15)
-
-
-def _depth_source(frame: GravityFrame, focal: FocalSource, settings: LineCameraSettings) -> CameraSource:
-    return CameraSource(
-        focal,
-        AttitudeSource.LEVEL_SURFACES if frame.height_m is None else AttitudeSource.FLOOR,
+    no_floor = frame.height_m is None
+    source = CameraSource(
+        estimate.source.focal,
+        AttitudeSource.LEVEL_SURFACES if no_floor else AttitudeSource.FLOOR,
         HeadingSource.WALLS if frame.wall_share > settings.min_wall_share else HeadingSource.VANISHING_POINTS,
     )
+    confidence = 0.6 if no_floor else 0.8 + 0.2 * _unit(frame.level_share / 0.15)
+    return CameraEstimate((reading, *others[: count - 1]), confidence, source, height_m=frame.height_m)
 
 
 def _unit(value: float) -> float:

@@ -36,11 +36,6 @@ def focal_from_exif(tags: Mapping[int, Any], width: int, height: int) -> float |
 
     The 35 mm equivalent is taken by the diagonal (CIPA DCG-001); else the focal length in millimetres with the sensor's
     pixel pitch. A picture whose proportions differ from those in the header was cropped, and is not trusted.
-
-    Args:
-        tags: The Exif sub-directory (tag number to value).
-        width: Pixels across; upright or not does not matter.
-        height: Pixels down.
     """
     if _was_cropped(tags, width, height):
         return None

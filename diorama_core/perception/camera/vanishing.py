@@ -94,13 +94,7 @@ class Lines:
     def of(
         cls, segments_px: Float[np.ndarray, "n 4"], intrinsics: Intrinsics, settings: LineCameraSettings = SETTINGS
     ) -> Lines:
-        """Segments in pixels seen by a camera; only its centre and the proportion of its focal lengths are used.
-
-        Args:
-            segments_px: x1, y1, x2, y2 of every segment.
-            intrinsics: of the picture.
-            settings: of the line camera.
-        """
+        """Segments in pixels seen by a camera; only its centre and the proportion of its focal lengths are used."""
         side = max(intrinsics.width, intrinsics.height)
         scale = np.array([1.0, intrinsics.fx / intrinsics.fy]) / side
         ends = (segments_px.reshape(-1, 2, 2) - [intrinsics.cx, intrinsics.cy]) * scale
@@ -116,19 +110,12 @@ class Lines:
 
 
 def search_frames(lines: Lines, focal: float | None, settings: LineCameraSettings = SETTINGS) -> tuple[FrameFit, ...]:
-    """The best room frames of a picture's lines, best first, at least one.
-
-    Args:
-        lines: The segments.
-        focal: Focal length over the longer side; None to look for it as well.
-    """
+    """The best room frames of a picture's lines, best first, at least one."""
     focals = FOCAL_GRID if focal is None else np.array([focal])
     starts: list[tuple[float, np.ndarray, float]] = []
-    for f in focals:
-        starts += [
-            (s + _focal_log_prior(f, focal, settings), R, float(f))
-            for s, R in _coarse_frames(lines, float(f), settings)
-        ]
+    for f in focals.tolist():
+        prior = _focal_log_prior(f, focal, settings)
+        starts += [(s + prior, R, f) for s, R in _coarse_frames(lines, f, settings)]
     starts.sort(key=lambda s: -s[0])
     chosen = _select_distinct(starts, _REFINED)
     fits = sorted((_refine(lines, R, f, focal, settings) for _, R, f in chosen), key=lambda fit: -fit.score)
@@ -195,30 +182,15 @@ def _refine(
 ) -> FrameFit:
     """Reweighted Gauss-Newton on rotation (and focal length), the tolerance narrowing to its final value."""
     R, focal = R_start, focal_start
-    free = 3 if known is not None else 4
     for sigma in np.array([2.0, 1.7, 1.4, 1.2, 1.0, 1.0, 1.0, 1.0]) * SIGMA_RAD:
-        step = _gauss_newton_step(lines, R, focal, float(sigma), free, known, settings)
-        R, focal = _apply_step(R, focal, step, known, settings)
+        R, focal = _take_step(lines, R, focal, float(sigma), known, settings)
     for _ in range(5):
-        step = _gauss_newton_step(lines, R, focal, _own_sigma(lines, R, focal), free, known, settings)
-        R, focal = _apply_step(R, focal, step, known, settings)
+        R, focal = _take_step(lines, R, focal, _own_sigma(lines, R, focal), known, settings)
     R = world_frame(R[2], R[1])
     best = _agreement(signed_sines(lines, R, focal)).max(axis=0)
     support = float(best @ lines.weights)
     prior = settings.prior_weight * _frame_log_prior(R[2])
     return FrameFit(R, focal, support, support + float(prior) + _focal_log_prior(focal, known, settings))
-
-
-def _apply_step(
-    R: Float[np.ndarray, "3 3"],
-    focal: float,
-    step: Float[np.ndarray, "free"],
-    known: float | None,
-    settings: LineCameraSettings,
-) -> tuple[Float[np.ndarray, "3 3"], float]:
-    if known is None:
-        focal = float(np.clip(focal * np.exp(np.clip(step[3], -0.2, 0.2)), *settings.focal_range))
-    return R @ _rotation(step[:3]), focal
 
 
 def _own_sigma(lines: Lines, R: Float[np.ndarray, "3 3"], focal: float) -> float:
@@ -229,16 +201,16 @@ def _own_sigma(lines: Lines, R: Float[np.ndarray, "3 3"], focal: float) -> float
     return float(np.clip(spread, MIN_SIGMA_RAD, SIGMA_RAD))
 
 
-def _gauss_newton_step(
+def _take_step(
     lines: Lines,
     R: Float[np.ndarray, "3 3"],
     focal: float,
     sigma: float,
-    free: int,
     known: float | None,
     settings: LineCameraSettings,
-) -> Float[np.ndarray, "free"]:
-    """One step of least squares on the segments' sines and the priors, in units of their deviations."""
+) -> tuple[Float[np.ndarray, "3 3"], float]:
+    """One step of least squares on the segments' sines and the priors, in units of their deviations (Gauss-Newton)."""
+    free = 3 if known is not None else 4
     nearest = np.abs(signed_sines(lines, R, focal)).argmin(axis=0)
     pick = (nearest, np.arange(len(nearest)))
     trials = _trial_steps(free, settings)
@@ -255,7 +227,10 @@ def _gauss_newton_step(
     )
     J = ((residuals[:free] - residuals[free:-1]) / (2 * settings.difference)).T
     step = -np.linalg.solve(J.T @ J + 1e-6 * np.eye(free), J.T @ residuals[-1])
-    return step * min(1.0, 0.1 / max(float(np.linalg.norm(step[:3])), 1e-9))
+    step = step * min(1.0, 0.1 / max(float(np.linalg.norm(step[:3])), 1e-9))
+    if known is None:
+        focal = float(np.clip(focal * np.exp(np.clip(step[3], -0.2, 0.2)), *settings.focal_range))
+    return R @ _rotation(step[:3]), focal
 
 
 @cache
@@ -282,11 +257,8 @@ def _frame_log_prior(up_camera: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, 
 def _focal_log_prior(focal: float, known: float | None, settings: LineCameraSettings) -> float:
     if known is not None:
         return 0.0
-    return (
-        settings.prior_weight
-        * -0.5
-        * float(np.square(np.log(focal / settings.focal_prior[0]) / settings.focal_prior[1]))
-    )
+    median, log_sigma = settings.focal_prior
+    return settings.prior_weight * -0.5 * float(np.square(np.log(focal / median) / log_sigma))
 
 
 @dataclass(frozen=True)

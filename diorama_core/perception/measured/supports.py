@@ -82,13 +82,7 @@ def supports_of_boxes(
 def rim_occlusion(
     mask: Bool[np.ndarray, "h w"], depth_m: Float[np.ndarray, "h w"], settings: MeasuredSettings = SETTINGS
 ) -> float:
-    """Share of an object's lower rim that something nearer, or the picture's border, hides.
-
-    Args:
-        mask: of the object.
-        depth_m: z in camera in metres; 0 where missing.
-        settings: how much nearer it must be.
-    """
+    """Share of an object's lower rim that something nearer, or the picture's border, hides."""
     columns = np.flatnonzero(mask.any(axis=0))
     if not len(columns):
         return 1.0
@@ -104,13 +98,7 @@ def rim_occlusion(
 
 
 def resting_heights(extent: TurnedExtent, category: Category, bottom_m: float) -> list[float]:
-    """Heights of an object's support surfaces: its top, its seat, and its boards, which may be anywhere.
-
-    Args:
-        extent: of the object.
-        category: of the object.
-        bottom_m: of what may rest on it.
-    """
+    """Heights of an object's support surfaces: its top, its seat, and its boards, which may be anywhere."""
     heights = [float(extent.high[2])]
     if category.seat_height_m is not None and category.seat_height_m < extent.high[2]:
         heights.append(category.seat_height_m)

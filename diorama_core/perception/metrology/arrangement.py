@@ -24,24 +24,16 @@ def distinct(
     for row in np.argsort(costs, kind="stable"):
         if len(rows) == settings.max_readings or (rows and costs[row] > costs[rows[0]] + settings.dearest):
             break
-        if not any(alike(boxes, int(row), boxes, other, settings) for other in rows):
+        if not any(_is_alike(boxes, int(row), other, settings) for other in rows):
             rows.append(int(row))
     return rows
 
 
-def alike(some: Cuboids, a: int, others: Cuboids, b: int, settings: PlacementSettings) -> bool:
-    """Whether a reading and another one hardly differ in place, heading and size.
-
-    Args:
-        some: a batch of cuboids, and `a` the row of one.
-        a: row of the first cuboid.
-        others: another batch, or the same.
-        b: row of the second cuboid.
-        settings: what is near enough in metres and in logarithms of sizes.
-    """
+def _is_alike(boxes: Cuboids, a: int, b: int, settings: PlacementSettings) -> bool:
+    """Whether two readings hardly differ in place, heading and size."""
     return bool(
-        np.linalg.norm(some.centre[a] - others.centre[b]) < settings.same_place_m
-        and np.abs(np.log(_footprint_axes(some, a) / _footprint_axes(others, b))).max() < settings.same_size
+        np.linalg.norm(boxes.centre[a] - boxes.centre[b]) < settings.same_place_m
+        and np.abs(np.log(_footprint_axes(boxes, a) / _footprint_axes(boxes, b))).max() < settings.same_size
     )
 
 
@@ -101,10 +93,8 @@ def _is_seat_at_table(a: Category, b: Category) -> bool:
 def _footprint_overlap(a: Cuboids, b: Cuboids, settings: PlacementSettings) -> Float[np.ndarray, "k l"]:
     """Share of the smaller footprint that lies in the other, for all pairs of readings; 0 for flat things."""
     a_in_b, b_in_a = _share_inside(a, b), _share_inside(b, a).T
-    solid = (a.size_m[:, 2] > settings.on_footprint_flat_m)[:, None] & (b.size_m[:, 2] > settings.on_footprint_flat_m)[
-        None
-    ]
-    return np.where(solid, np.maximum(a_in_b, b_in_a), 0.0)
+    solid_a, solid_b = (boxes.size_m[:, 2] > settings.on_footprint_flat_m for boxes in (a, b))
+    return np.where(solid_a[:, None] & solid_b, np.maximum(a_in_b, b_in_a), 0.0)
 
 
 def _share_inside(a: Cuboids, b: Cuboids) -> Float[np.ndarray, "k l"]:

@@ -26,13 +26,6 @@ HIDDEN_ODDS = np.array([0.06, 0.03, 0.06, 0.12])
 """That an object goes on unseen beyond an edge of its box where nothing speaks for it; see `hidden_odds`."""
 
 
-def _bottom_lower(
-    boxes: Float[np.ndarray, "n 4"], height: int, settings: BoxObservationSettings
-) -> Bool[np.ndarray, "n n"]:
-    """Whether j's box ends clearly lower than i's: on the same floor, j is in front."""
-    return boxes[None, :, 3] > boxes[:, None, 3] + settings.clearly_lower * height
-
-
 @dataclass(frozen=True, eq=False)
 class SeenDepths:
     """Depths at which a network sees the objects. Its errors of scale are common to the whole picture, so they are in
@@ -144,23 +137,25 @@ def gather(
         width, height: of the picture, pixels.
         settings: of metrology.
     """
-    boxes = np.array([_proper(o.box, width, height, settings.observed) for o in objects], dtype=float).reshape(-1, 4)
+    observed, size = settings.observed, np.array([width, height])
+    drawn = np.array([o.box for o in objects], dtype=float).reshape(-1, 4)
+    low = np.clip(drawn[:, :2], 0.0, size - observed.min_box_px)
+    boxes = np.concatenate([low, np.clip(drawn[:, 2:], low + observed.min_box_px, size)], axis=1)
     extent = np.tile(boxes[:, 2:] - boxes[:, :2], 2)
-    sigma = settings.observed.share_sigma * extent + settings.observed.pixel_sigma * max(width, height) / 640
+    sigma = observed.share_sigma * extent + observed.pixel_sigma * max(width, height) / 640
     border = np.array([0.0, 0.0, width, height])
     truncated = np.abs(boxes - border) <= BORDER_SHARE * max(width, height)
-    categories = tuple(category(o.category) for o in objects)
-    covered = _find_covered_edges(boxes, height, settings.observed)
+    # A box that ends clearly lower is in front, on the same floor.
+    in_front = boxes[None, :, 3] > boxes[:, None, 3] + observed.clearly_lower * height
+    covered = _find_covered_edges(boxes, in_front, observed)
     unseen = truncated | covered.any(axis=1).reshape(-1, 4)
     exact = np.array([o.mask_confidence >= 1 for o in objects], dtype=bool)
     trust = np.array([o.mask_confidence**2 for o in objects]).reshape(-1, 1)
-    trust = trust * np.where(exact, 1.0, settings.observed.guessed_trust)[:, None]
+    trust = trust * np.where(exact, 1.0, observed.guessed_trust)[:, None]
     weight = np.column_stack([np.where(unseen[:, e].any(axis=1), 0.0, 1.0) for e in CORNER_EDGES]) * trust
     reach = np.array([mask_reach(o, b) for o, b in zip(objects, boxes, strict=True)]).reshape(-1, 4)
-    in_front, before = _bottom_lower(boxes, height, settings.observed), _strip_shares(objects, boxes, settings.observed)
-    meanings = tuple(o.meanings for o in objects)
     return BoxObservations(
-        categories,
+        tuple(category(o.category) for o in objects),
         boxes,
         sigma,
         covered,
@@ -169,10 +164,10 @@ def gather(
         reach,
         weight,
         exact,
-        before,
-        _edge_shares(objects, boxes, settings.observed),
-        _ends_seen(objects, settings.observed),
-        meanings,
+        _strip_shares(objects, boxes, observed),
+        _edge_shares(objects, boxes, observed),
+        _ends_seen(objects, observed),
+        tuple(o.meanings for o in objects),
         settings,
     )
 
@@ -215,10 +210,8 @@ def _strip_shares(
     n, before = len(boxes), np.zeros((len(boxes), len(boxes)))
     for i in range(n):
         x1, y1, x2, y2 = boxes[i]
-        wide = max(settings.strip * (x2 - x1), settings.min_box_px)
-        rows = slice(
-            round(y2 - settings.lower_end * (y2 - y1)), max(round(y2), round(y2 - settings.lower_end * (y2 - y1)) + 1)
-        )
+        wide, top = max(settings.strip * (x2 - x1), settings.min_box_px), round(y2 - settings.lower_end * (y2 - y1))
+        rows = slice(top, max(round(y2), top + 1))
         sides = [slice(max(round(x1 - wide), 0), round(x1)), slice(round(x2), round(x2 + wide))]
         for j in range(n):
             shares = [float(objects[j].mask[rows, side].mean()) for side in sides if objects[j].mask[rows, side].size]
@@ -270,18 +263,10 @@ def _ends_seen(objects: tuple[DetectedObject, ...], settings: BoxObservationSett
     return ends
 
 
-def _proper(
-    box: tuple[float, float, float, float], width: int, height: int, settings: BoxObservationSettings
-) -> tuple[float, float, float, float]:
-    """The box inside the picture, at least two pixels large."""
-    x1, y1 = min(max(box[0], 0.0), width - settings.min_box_px), min(max(box[1], 0.0), height - settings.min_box_px)
-    return x1, y1, min(max(box[2], x1 + settings.min_box_px), width), min(max(box[3], y1 + settings.min_box_px), height)
-
-
 def _find_covered_edges(
-    boxes: Float[np.ndarray, "n 4"], height: int, settings: BoxObservationSettings
+    boxes: Float[np.ndarray, "n 4"], in_front: Bool[np.ndarray, "n n"], settings: BoxObservationSettings
 ) -> Bool[np.ndarray, "n n 4"]:
-    """For objects i, j and edges: j's box covers at least half of i's edge and ends clearly lower."""
+    """For objects i, j and edges: j's box covers at least half of i's edge and is in front."""
     n = len(boxes)
     low, high = boxes[:, None, :2], boxes[:, None, 2:]
     shared = np.minimum(high, boxes[None, :, 2:]) - np.maximum(low, boxes[None, :, :2])
@@ -292,4 +277,4 @@ def _find_covered_edges(
         at = boxes[:, None, edge]
         strictly_inside = (boxes[None, :, across] < at) & (at < boxes[None, :, across + 2])
         covered[:, :, edge] = strictly_inside & (share[..., 1 - across] >= settings.covered)
-    return covered & _bottom_lower(boxes, height, settings)[..., None] & ~np.eye(n, dtype=bool)[..., None]
+    return covered & (in_front & ~np.eye(n, dtype=bool))[..., None]

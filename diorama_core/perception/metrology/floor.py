@@ -13,12 +13,7 @@ from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.priors import SizeMode, standing_costs
 from diorama_core.perception.metrology.problem import UNKNOWNS, UNTOLD, Problems, View, concatenate_problems
 from diorama_core.perception.metrology.rows import contact_start, other_start, row, size_start
-from diorama_core.perception.metrology.settings import (
-    SETTINGS,
-    CuboidFitSettings,
-    HeightScanSettings,
-    MetrologySettings,
-)
+from diorama_core.perception.metrology.settings import SETTINGS, HeightScanSettings, MetrologySettings
 from diorama_core.perception.metrology.solver import Solutions, solve
 
 HEIGHTS_M: Float[np.ndarray, "13"] = np.geomspace(0.5, 2.3, 13)
@@ -44,12 +39,12 @@ def stands_on_floor(category: Category) -> bool:
     return category.mount == "floor" or category.name == "door"
 
 
-def scan_heights(observations: BoxObservations, view: View, settings: MetrologySettings = SETTINGS) -> HeightScan:
+def scan_heights(observations: BoxObservations, view: View) -> HeightScan:
     """Find the camera's height at which the objects on the floor have the most plausible sizes.
 
     Without any, the prior decides.
     """
-    return scan_heights_together([(observations, view, range(len(observations)))], settings=settings)
+    return scan_heights_together([(observations, view, range(len(observations)))], settings=observations.settings)
 
 
 def scan_heights_together(
@@ -80,42 +75,30 @@ def scan_heights_together(
             total = total + off**2
     for voters, (observations, view, _) in zip(telling if any(telling) else standing, pictures, strict=True):
         if voters:
-            rows = concatenate_problems([p for i in voters for p in _scan_rows(observations, i, settings.fit)])
-            total = total + _votes(rows, observations, view, settings)
-    log_height, log_sigma, cost = _parabola_minimum(
-        log_heights, total if further_cost is None else total + further_cost
-    )
+            rows = concatenate_problems([p for i in voters for p in _scan_rows(observations, i)])
+            total = total + _votes(rows, observations, view)
+    total = total if further_cost is None else total + further_cost
+    log_height, log_sigma, cost = _parabola_minimum(log_heights, total)
     return HeightScan(float(np.exp(log_height)), log_sigma, cost)
 
 
 def place_on_floor(
-    observations: BoxObservations,
-    index: int,
-    height_m: float,
-    modes: tuple[SizeMode, ...] | None = None,
-    settings: MetrologySettings = SETTINGS,
+    observations: BoxObservations, index: int, height_m: float, modes: tuple[SizeMode, ...] | None = None
 ) -> list[Problems]:
     """Rows for an object on the floor, with odd headings where its category stands freely.
-
-    `modes` are the sizes it may have, those of its category by default.
 
     Args:
         observations: of all objects.
         index: of the object.
         height_m: of the camera above the floor.
-        modes: sizes that the object may have.
-        settings: of metrology.
+        modes: sizes that the object may have, those of its category by default.
     """
     category, rows = observations.categories[index], []
     for mode in modes or observations.size_modes(index):
-        raised = standing_costs(category.name, mode, settings.placement)[0]
-        for yaw, cost in _headings(category, settings.heights):
+        raised = standing_costs(category.name, mode, observations.settings.placement)[0]
+        for yaw, cost in _headings(category, observations.settings.heights):
             extra = mode.cost + cost + raised
-            rows.append(
-                row(
-                    observations, index, mode, camera_height_m=height_m, yaw_rad=yaw, extra=extra, settings=settings.fit
-                )
-            )
+            rows.append(row(observations, index, mode, camera_height_m=height_m, yaw_rad=yaw, extra=extra))
     return rows
 
 
@@ -141,49 +124,34 @@ def _headings(category: Category, settings: HeightScanSettings) -> list[tuple[fl
     return headings
 
 
-def _scan_rows(observations: BoxObservations, index: int, settings: CuboidFitSettings) -> list[Problems]:
+def _scan_rows(observations: BoxObservations, index: int) -> list[Problems]:
     """Rows for one object at every height; the cut is left out, it would draw the camera up and away."""
     return [
-        row(observations, index, mode, camera_height_m=float(height), yaw_rad=yaw, cut_sigma=UNTOLD, settings=settings)
+        row(observations, index, mode, camera_height_m=float(height), yaw_rad=yaw, cut_sigma=UNTOLD)
         for mode in observations.size_modes(index)
         for yaw in ((0.0,) if mode.square else (0.0, np.pi / 2))
         for height in HEIGHTS_M
     ]
 
 
-def _votes(
-    rows: Problems, observations: BoxObservations, view: View, settings: MetrologySettings
-) -> Float[np.ndarray, "13"]:
-    """Sum over objects of how badly all their readings together fit at every height."""
-    total = np.zeros(len(HEIGHTS_M))
-    costs = _costs_at_heights(rows, observations, view, settings)
-    for index, cost in costs.items():
-        most = (
-            settings.heights.max_doubtful_vote
-            if observations.categories[index].name in _MAYBE_ELSEWHERE
-            else settings.heights.max_vote
-        )
-        total += np.minimum(cost, most) * _share_of_vote(index, costs, observations, settings.heights)
+def _votes(rows: Problems, observations: BoxObservations, view: View) -> Float[np.ndarray, "13"]:
+    """Sum over objects of how badly all their readings together fit at every height; those of a kind share votes."""
+    total, settings = np.zeros(len(HEIGHTS_M)), observations.settings.heights
+    costs = _costs_at_heights(rows, observations, view)
+    names = [observations.categories[i].name for i in costs]
+    for name, cost in zip(names, costs.values(), strict=True):
+        most = settings.max_doubtful_vote if name in _MAYBE_ELSEWHERE else settings.max_vote
+        total += np.minimum(cost, most) * (1 / (1 + (names.count(name) - 1) * settings.alike))
     return total
 
 
-def _share_of_vote(
-    index: int, voters: Collection[int], observations: BoxObservations, settings: HeightScanSettings
-) -> float:
-    """How much one object's vote counts beside those of others of its kind."""
-    name = observations.categories[index].name
-    alike = sum(observations.categories[i].name == name for i in voters)
-    return 1 / (1 + (alike - 1) * settings.alike)
-
-
-def _costs_at_heights(
-    rows: Problems, observations: BoxObservations, view: View, settings: MetrologySettings
-) -> dict[int, Float[np.ndarray, "13"]]:
+def _costs_at_heights(rows: Problems, observations: BoxObservations, view: View) -> dict[int, Float[np.ndarray, "13"]]:
     """For every object how badly all its readings together fit at every height of the camera.
 
     `rows` come in runs of one assumption at every height. A solution made larger with the camera's height projects
     alike, so every height starts once more from its neighbours' solutions: no vote hangs on an unlucky start.
     """
+    settings = observations.settings
     named = np.array([observations.categories[int(i)] is not UNKNOWN for i in rows.item])
     again = rows.rows(named)
     starts = np.concatenate([contact_start(rows, view, settings.fit), other_start(again, view, settings=settings.fit)])

@@ -7,7 +7,7 @@ two apart. On the floor they would be seen through the top.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,7 +16,7 @@ from jaxtyping import Float
 from diorama_core.perception.metrology.box_observations import BoxObservations
 from diorama_core.perception.metrology.floor import solve_all
 from diorama_core.perception.metrology.problem import Cuboids, Problems, View
-from diorama_core.perception.metrology.settings import SETTINGS, BoxObservationSettings, MetrologySettings
+from diorama_core.perception.metrology.settings import SETTINGS, BoxObservationSettings
 from diorama_core.perception.metrology.supported_objects import place_on, supporters_of
 
 
@@ -29,16 +29,15 @@ class CarriedCosts:
     height_m: float
     _known: dict[tuple[int, bytes], float] = field(default_factory=dict)
     """By carrier and cuboid."""
-    settings: MetrologySettings = SETTINGS
 
     def costs(self, readings: Mapping[int, Cuboids]) -> dict[int, Float[np.ndarray, "_"]]:
-        """Cost of each reading of each object; 0 where there is nothing to choose, or nothing to carry.
-
-        Args:
-            readings: Cuboids that each object may be, by index.
-        """
+        """Cost of each reading of each object; 0 where there is nothing to choose, or nothing to carry."""
         children = {i: self._children(i) for i, boxes in readings.items() if len(boxes.yaw_rad) > 1}
-        asked = {i: list(_singly(readings[i])) for i, loads in children.items() if loads}
+        asked = {
+            i: [readings[i].rows(np.array([k])) for k in range(len(readings[i].yaw_rad))]
+            for i, loads in children.items()
+            if loads
+        }
         unknown = [(i, one) for i, boxes in asked.items() for one in boxes if _key(i, one) not in self._known]
         if unknown:
             self._solve(unknown, children)
@@ -50,8 +49,7 @@ class CarriedCosts:
         return [
             i
             for i, category in enumerate(self.observations.categories)
-            if category.mount == "surface"
-            and parent in supporters_of(self.observations, i, [parent], self.settings.placement)
+            if category.mount == "surface" and supporters_of(self.observations, i, [parent])
         ]
 
     def _solve(self, carriers: list[tuple[int, Cuboids]], children: Mapping[int, list[int]]) -> None:
@@ -60,26 +58,20 @@ class CarriedCosts:
         below: list[int] = []
         """The carrier that each row lies on."""
         for at, (parent, box) in enumerate(carriers):
-            loads = children[parent]
             made = [
-                p for i in loads for p in place_on(self.observations, i, parent, box, self.height_m, 0.0, self.settings)
+                p for i in children[parent] for p in place_on(self.observations, i, parent, box, self.height_m, 0.0)
             ]
             rows += made
             below += [at] * sum(map(len, made))
-        solved = solve_all(rows, self.view, self.settings)
+        solved = solve_all(rows, self.view, self.observations.settings)
         lowest = np.full((len(carriers), len(self.observations)), np.inf)
         item = solved.problems.item.astype(int)
         np.minimum.at(lowest, (np.tile(below, len(item) // len(below)), item), solved.cost)
         for at, (parent, box) in enumerate(carriers):
             self._known[_key(parent, box)] = sum(
-                min(float(lowest[at, i]), self.settings.placement.max_carried_cost) for i in children[parent]
+                min(float(lowest[at, i]), self.observations.settings.placement.max_carried_cost)
+                for i in children[parent]
             )
-
-
-def _singly(boxes: Cuboids) -> Iterator[Cuboids]:
-    """Batches of one."""
-    for k in range(len(boxes.yaw_rad)):
-        yield Cuboids(boxes.centre[k : k + 1], boxes.yaw_rad[k : k + 1], boxes.size_m[k : k + 1])
 
 
 def _key(parent: int, box: Cuboids) -> tuple[int, bytes]:
@@ -104,15 +96,10 @@ def share_seen_through_top(
         view: How the camera is held.
     """
     drop = float(carrier.top_m[0]) - height_m
-    x1, y1, x2, y2 = box_px
-    k, across = (
-        view.intrinsics,
-        (x1 + x2) / 2 + 0.5 * settings.middle * (x2 - x1) * np.linspace(-1.0, 1.0, settings.samples),
-    )
-    pixels = np.stack(
-        [(across - k.cx) / k.fx, np.full(settings.samples, (y2 - settings.lower * (y2 - y1) - k.cy) / k.fy)], axis=-1
-    )
-    rays = np.column_stack([pixels, np.ones(settings.samples)]) @ view.R_world_camera.T
+    (x1, y1, x2, y2), k = box_px, view.intrinsics
+    across = (x1 + x2) / 2 + 0.5 * settings.middle * (x2 - x1) * np.linspace(-1.0, 1.0, settings.samples)
+    row = np.full(settings.samples, (y2 - settings.lower * (y2 - y1) - k.cy) / k.fy)
+    rays = np.column_stack([(across - k.cx) / k.fx, row, np.ones(settings.samples)]) @ view.R_world_camera.T
     down = rays[:, 2] * np.sign(drop) > 1e-6
     met = (drop / np.where(down, rays[:, 2], 1.0))[:, None] * rays[:, :2]
     nearest = float(np.linalg.norm(standing.centre[0, :2])) - 0.5 * float(standing.size_m[0, :2].max())

@@ -99,10 +99,6 @@ class Problems:
         """The chosen rows, by index or by mask."""
         return Problems(**{f.name: getattr(self, f.name)[chosen] for f in fields(self)})
 
-    def without_outlines(self) -> Problems:
-        """The rows without their largest column, where insets are known."""
-        return replace(self, outline=self.outline[:, :0])
-
     def with_columns(self, **columns: object) -> Problems:
         """A copy with some columns replaced (broadcast to the rows)."""
         whole = {k: np.broadcast_to(np.asarray(v), getattr(self, k).shape) for k, v in columns.items()}
@@ -121,6 +117,10 @@ class Cuboids:
     centre: Float[np.ndarray, "n 3"]
     yaw_rad: Float[np.ndarray, "n"]
     size_m: Float[np.ndarray, "n 3"]
+
+    def rows(self, chosen: np.ndarray) -> Cuboids:
+        """The chosen ones, by index or by mask."""
+        return Cuboids(self.centre[chosen], self.yaw_rad[chosen], self.size_m[chosen])
 
     @property
     def base_m(self) -> Float[np.ndarray, "n"]:
@@ -158,14 +158,6 @@ class Values:
     """Everything that speaks against them, in sigmas: their squares sum to a row's cost."""
     inset_px: Float[np.ndarray, "n 4"]
     """By how much the objects' outlines stay within their cuboids."""
-
-    def rows(self, chosen: np.ndarray) -> Values:
-        """The chosen rows."""
-        return Values(self.residuals[chosen], self.inset_px[chosen])
-
-    def put(self, chosen: np.ndarray, anew: Values) -> None:
-        """Replace the chosen rows."""
-        self.residuals[chosen], self.inset_px[chosen] = anew.residuals, anew.inset_px
 
 
 def values(
@@ -258,16 +250,7 @@ def _edge_residuals(
     view: View,
     settings: CuboidFitSettings,
 ) -> Float[np.ndarray, "n 4"]:
-    """How far the projected box is from the observed one, edge by edge; lenient as far as something hides the rest.
-
-    Args:
-        bounds: left, top, right and bottom of the projected cuboids, pixels.
-        visible: whether anything of a cuboid is in front of the camera.
-        unfilled: by how much each object's outline stays within its cuboid, pixels.
-        problems: what was seen of every row's object.
-        view: intrinsics, and rotation from camera to world.
-        settings: of the fit.
-    """
+    """How far the projected box is from the observed one, edge by edge; lenient as far as something hides the rest."""
     k = view.intrinsics
     border = np.abs(bounds - [0.0, 0.0, k.width, k.height]) < 1e-6
     inward = np.array([1.0, 1.0, -1.0, -1.0])
@@ -335,17 +318,12 @@ def _off_depth(
 
 
 def _off_wall(boxes: Cuboids, problems: Problems, settings: CuboidFitSettings) -> Float[np.ndarray, "n 1"]:
-    """Whether the object's back lies in its wall, which is no nearer than the things that stand before it."""
+    """Whether the object's back lies in its wall, which is no nearer than the things that stand before it.
+
+    A back that is nearer than its wall deviates by fewer sigmas than one behind.
+    """
     front = np.stack([np.cos(boxes.yaw_rad), np.sin(boxes.yaw_rad)], axis=-1)
     back = (boxes.centre[:, :2] * front).sum(axis=1) - boxes.size_m[:, 0] / 2
-    ratio = np.maximum(-back, settings.min_back_m) / problems.wall_m
-    off = np.log(ratio)
-    return (off / _wall_sigmas(off, problems, settings))[:, None]
-
-
-def _wall_sigmas(
-    off: Float[np.ndarray, "n"], problems: Problems, settings: CuboidFitSettings
-) -> Float[np.ndarray, "n"]:
-    """Deviations of backs that are nearer than their walls, and of those behind, by the sign of `off`."""
-    nearer = np.minimum(problems.wall_sigma, np.maximum(settings.wall_nearer_log_sigma, problems.wall_sigma / 5))
-    return np.where((off < 0) & (problems.wall_sigma < UNTOLD), nearer, problems.wall_sigma)
+    off, sigma = np.log(np.maximum(-back, settings.min_back_m) / problems.wall_m), problems.wall_sigma
+    nearer = np.minimum(sigma, np.maximum(settings.wall_nearer_log_sigma, sigma / 5))
+    return (off / np.where((off < 0) & (sigma < UNTOLD), nearer, sigma))[:, None]

@@ -40,30 +40,16 @@ def heading_and_size(
     return float(np.arctan2(np.sin(turned), np.cos(turned))), size
 
 
-def foot_seen(
-    placement: Placement, observations: BoxObservations, settings: HeightScanSettings = SETTINGS.heights
-) -> bool:
+def foot_seen(placement: Placement, observations: BoxObservations) -> bool:
     """Whether the lower end of an object is seen, as far as it tells how far away the object is: on the floor."""
-    index = placement.index
-    hidden = observations.truncated[index][3] or observations.hidden_odds(index)[3] > settings.may_be_hidden
+    index, doubtful = placement.index, observations.settings.heights.may_be_hidden
+    hidden = observations.truncated[index][3] or observations.hidden_odds(index)[3] > doubtful
     return placement.supporter != FLOOR or not hidden
 
 
-def confidence_of(
-    placement: Placement,
-    observations: BoxObservations,
-    height_log_sigma: float,
-    settings: HeightScanSettings = SETTINGS.heights,
-) -> float:
-    """Between 0 and 1: low for implausible sizes, bad fits, hidden or cut boxes, and an unsure camera height.
-
-    Args:
-        placement: of one object.
-        observations: of all objects.
-        height_log_sigma: standard deviation of the logarithm of the camera's height.
-        settings: of confidences.
-    """
-    index = placement.index
+def confidence_of(placement: Placement, observations: BoxObservations, height_log_sigma: float) -> float:
+    """Between 0 and 1: low for implausible sizes, bad fits, hidden or cut boxes, and an unsure camera height."""
+    index, settings = placement.index, observations.settings.heights
     parent = placement.supporter if placement.supporter >= 0 else None
     unseen = int((observations.is_hidden(index, parent) | observations.truncated[index]).sum())
     fit = np.exp(-placement.cost / settings.cost_scale)

@@ -19,13 +19,12 @@ def row(
     camera_height_m: float,
     yaw_rad: float,
     parent: int | None = None,
-    settings: CuboidFitSettings = SETTINGS.fit,
     **more: object,
 ) -> Problems:
     """A batch of one row: by default a thing on the floor; `more` replaces columns.
 
     Args:
-        evidence: What the picture says.
+        observations: What the picture says.
         index: The object.
         mode: The assumed size.
         camera_height_m: The camera's height above the floor.
@@ -54,7 +53,7 @@ def row(
         "footprint_sigma_m": UNTOLD,
         "wall_m": 1.0,
         "wall_sigma": UNTOLD,
-        "cut_sigma": settings.cut_log_sigma,
+        "cut_sigma": observations.settings.fit.cut_log_sigma,
         "log_depth": log_depth,
         "depth_sigma": depth_sigma,
         "outline": mode.outline,

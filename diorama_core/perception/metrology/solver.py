@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -64,24 +64,25 @@ def solve(
     cost = _cost(at)
     damping = np.full(len(problems), 1e-2)
     active, moved = np.arange(len(problems)), np.arange(len(problems))
-    slopes = _Slopes(np.empty((len(problems), UNKNOWNS)), np.empty((len(problems), UNKNOWNS, UNKNOWNS)))
-    plain = problems.without_outlines()
+    gradient, normal = np.empty((len(problems), UNKNOWNS)), np.empty((len(problems), UNKNOWNS, UNKNOWNS))
+    plain = replace(problems, outline=problems.outline[:, :0])  # the largest column, of no use where insets are known
     for _ in range(iterations):
         if not len(active):
             break
         anew = np.intersect1d(active, moved, assume_unique=True)  # a row that stayed has the slopes that it had
         if len(anew):
-            slopes.put(anew, _slopes(plain.rows(anew), unknowns[anew], at.rows(anew), view, settings))
-        part, here = problems.rows(active), unknowns[active]
-        bounds = low[active], high[active]
-        trial = np.clip(here + _step(slopes.rows(active), here, damping[active], bounds, settings), *bounds)
-        at_there = values(trial, part, view, settings=settings)
+            here = Values(at.residuals[anew], at.inset_px[anew])
+            gradient[anew], normal[anew] = _slopes(plain.rows(anew), unknowns[anew], here, view, settings)
+        start, bounds = unknowns[active], (low[active], high[active])
+        step = _step((gradient[active], normal[active]), start, damping[active], bounds, settings)
+        trial = np.clip(start + step, *bounds)
+        at_there = values(trial, problems.rows(active), view, settings=settings)
         reached = _cost(at_there)
         gain = cost[active] - reached
         better = gain > 0
         moved = active[better]
         unknowns[moved], cost[moved] = trial[better], reached[better]
-        at.put(moved, at_there.rows(better))
+        at.residuals[moved], at.inset_px[moved] = at_there.residuals[better], at_there.inset_px[better]
         damping[active] = np.where(better, damping[active] * 0.3, damping[active] * 6.0)
         active = active[(~better & (damping[active] < 1e5)) | (gain > settings.min_gain)]
     return Solutions(problems, unknowns, cost + problems.extra)
@@ -102,29 +103,9 @@ def _cost(at: Values) -> Float[np.ndarray, "n"]:
     return np.asarray((at.residuals**2).sum(axis=1))
 
 
-@dataclass(frozen=True, eq=False)
-class _Slopes:
-    """How the rows' costs change where they are."""
-
-    gradient: Float[np.ndarray, "n 6"]
-    normal: Float[np.ndarray, "n 6 6"]
-
-    def rows(self, chosen: np.ndarray) -> _Slopes:
-        """The chosen rows."""
-        return _Slopes(self.gradient[chosen], self.normal[chosen])
-
-    def put(self, chosen: np.ndarray, anew: _Slopes) -> None:
-        """Replace the chosen rows."""
-        self.gradient[chosen], self.normal[chosen] = anew.gradient, anew.normal
-
-
 def _slopes(
-    problems: Problems,
-    unknowns: Float[np.ndarray, "n 6"],
-    here: Values,
-    view: View,
-    settings: CuboidFitSettings = SETTINGS.fit,
-) -> _Slopes:
+    problems: Problems, unknowns: Float[np.ndarray, "n 6"], here: Values, view: View, settings: CuboidFitSettings
+) -> tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6 6"]]:
     """Gradients and normal matrices, by forward differences; insets of outlines are taken to stay."""
     probes = (unknowns[None] + _STEP * np.eye(UNKNOWNS)[:, None]).reshape(-1, UNKNOWNS)
     repeated = problems.rows(np.tile(np.arange(len(problems)), UNKNOWNS))
@@ -132,19 +113,18 @@ def _slopes(
     there = values(probes, repeated, view, inset, settings).residuals.reshape(UNKNOWNS, *here.residuals.shape)
     derivatives = ((there - here.residuals) / _STEP).transpose(1, 2, 0)
     turned = derivatives.transpose(0, 2, 1)
-    return _Slopes((turned @ here.residuals[..., None])[..., 0], turned @ derivatives)
+    return (turned @ here.residuals[..., None])[..., 0], turned @ derivatives
 
 
 def _step(
-    slopes: _Slopes,
+    slopes: tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6 6"]],
     unknowns: Float[np.ndarray, "n 6"],
     damping: Float[np.ndarray, "n"],
     bounds: tuple[Float[np.ndarray, "n 6"], Float[np.ndarray, "n 6"]],
     settings: CuboidFitSettings,
 ) -> Float[np.ndarray, "n 6"]:
     """The damped Gauss-Newton step of the unknowns that no bound stops."""
-    low, high = bounds
-    gradient, normal = slopes.gradient, slopes.normal
+    (low, high), (gradient, normal) = bounds, slopes
     free = ~(((unknowns <= low) & (gradient > 0)) | ((unknowns >= high) & (gradient < 0)))
     gradient = gradient * free
     normal = normal * free[:, :, None] * free[:, None, :]

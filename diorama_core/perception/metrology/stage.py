@@ -22,7 +22,7 @@ from diorama_core.perception.metrology.floor import HeightScan, scan_heights
 from diorama_core.perception.metrology.placement import CEILING, FLOOR, WALL, Placement, place_all
 from diorama_core.perception.metrology.problem import View
 from diorama_core.perception.metrology.reading import confidence_of, foot_seen, heading_and_size, reasons_of
-from diorama_core.perception.metrology.settings import SETTINGS, HeightScanSettings, MetrologySettings
+from diorama_core.perception.metrology.settings import SETTINGS, MetrologySettings
 from diorama_core.progress import Progress
 from diorama_core.provenance import ScaleSource
 from diorama_core.scene.types import Camera, Relation, Support, yaw_rotation
@@ -56,14 +56,11 @@ class SingleViewMetrology:
         hypothesis, scan, observations = self._choose(camera.hypotheses, observations, inputs.photo, objects, progress)
         view = View(hypothesis.intrinsics, hypothesis.R_world_camera)
         progress.report(0.6, "Placing objects")
-        placements = place_all(observations, view, scan.height_m, self.settings)
+        placements = place_all(observations, view, scan.height_m)
         progress.report(1.0, "Objects measured")
         return ObjectGeometry(
             camera=_camera(hypothesis, scan.height_m),
-            cuboids=tuple(
-                _cuboid(o, p, observations, scan, self.settings.heights)
-                for o, p in zip(objects, placements, strict=True)
-            ),
+            cuboids=tuple(_cuboid(o, p, observations, scan) for o, p in zip(objects, placements, strict=True)),
             supports=supports_of(placements, objects),
             source=ScaleSource.OBJECT_SIZES if objects else ScaleSource.CAMERA_HEIGHT,
             confidence=_overall(camera, scan, len(objects)),
@@ -88,7 +85,7 @@ class SingleViewMetrology:
             if self.depth is not None:
                 seen = self.depth.predict(photo.rgb, hypothesis.intrinsics)
                 observations = replace(observations, depths=observe_depths(seen, objects, view, self.settings.observed))
-            scanned.append((hypothesis, scan_heights(observations, view, self.settings), observations))
+            scanned.append((hypothesis, scan_heights(observations, view), observations))
         return max(scanned, key=lambda tried: tried[0].score - self.settings.heights.cost_weight * tried[1].cost)
 
 
@@ -99,34 +96,27 @@ def _camera(hypothesis: CameraHypothesis, height_m: float) -> Camera:
     return Camera(hypothesis.intrinsics, T)
 
 
-def _cuboid(
-    item: DetectedObject,
-    placement: Placement,
-    observations: BoxObservations,
-    scan: HeightScan,
-    settings: HeightScanSettings,
-) -> Cuboid:
-    yaw, size = heading_and_size(placement, observations.categories[placement.index], settings)
+def _cuboid(item: DetectedObject, placement: Placement, observations: BoxObservations, scan: HeightScan) -> Cuboid:
+    category = observations.categories[placement.index]
+    yaw, size = heading_and_size(placement, category, observations.settings.heights)
     return Cuboid(
         object_id=item.id,
         R_world_object=yaw_rotation(yaw),
         centre=placement.cuboid.centre[0],
         size_m=size,
-        confidence=confidence_of(placement, observations, scan.log_sigma, settings),
-        foot_seen=foot_seen(placement, observations, settings),
+        confidence=confidence_of(placement, observations, scan.log_sigma),
+        foot_seen=foot_seen(placement, observations),
     )
 
 
 def supports_of(placements: Sequence[Placement], objects: tuple[DetectedObject, ...]) -> tuple[Support, ...]:
     """One support edge per object, in the order given."""
-    return tuple(_support(p, objects) for p in placements)
-
-
-def _support(placement: Placement, objects: tuple[DetectedObject, ...]) -> Support:
-    child = objects[placement.index].id
-    parent = _PARENT_NAMES.get(placement.supporter)
-    relation: Relation = "mounted on" if placement.supporter in (WALL, CEILING) else "placed on"
-    return Support(child, parent if parent is not None else objects[placement.supporter].id, relation)
+    edges = []
+    for placement in placements:
+        parent = _PARENT_NAMES.get(placement.supporter) or objects[placement.supporter].id
+        relation: Relation = "mounted on" if placement.supporter in (WALL, CEILING) else "placed on"
+        edges.append(Support(objects[placement.index].id, parent, relation))
+    return tuple(edges)
 
 
 def _overall(camera: CameraEstimate, scan: HeightScan, count: int) -> float:

@@ -18,10 +18,10 @@ from diorama_core.library.taxonomy import (
     often_carried,
 )
 from diorama_core.perception.metrology.box_observations import BoxObservations
-from diorama_core.perception.metrology.priors import SizeMode, modes_held, standing_costs
+from diorama_core.perception.metrology.priors import modes_held, standing_costs
 from diorama_core.perception.metrology.problem import UNTOLD, Cuboids, Problems
 from diorama_core.perception.metrology.rows import row
-from diorama_core.perception.metrology.settings import SETTINGS, MetrologySettings, PlacementSettings
+from diorama_core.perception.metrology.settings import SETTINGS, PlacementSettings
 
 FLOOR_OBJECT_COST = 4.0
 """Cost of a thing that usually stands on the floor and stands on another; portable things pay by their size instead."""
@@ -69,21 +69,13 @@ def extent_of(
     return RoomExtent(reach[0], reach[1], reach[2], sigmas[0], sigmas[1], sigmas[2])
 
 
-def supporters_of(
-    observations: BoxObservations, index: int, candidates: list[int], settings: PlacementSettings = SETTINGS.placement
-) -> list[int]:
+def supporters_of(observations: BoxObservations, index: int, candidates: list[int]) -> list[int]:
     """Candidates whose boxes an object may rest in: most of its width lies within, and its bottom not below.
 
     Both boxes' edges are drawn by people or detectors; the bottom may be above the candidate by as much as that leaves
     open, or by a share of the candidate's height.
-
-    Args:
-        observations: of all objects.
-        index: of the object.
-        candidates: indices of possible supporters.
-        settings: of placement.
     """
-    box = observations.box_px[index]
+    settings, box = observations.settings.placement, observations.box_px[index]
     supporters = []
     for other in candidates:
         theirs = observations.box_px[other]
@@ -105,7 +97,6 @@ def place_on(
     parent_cuboid: Cuboids,
     height_m: float,
     cost: float,
-    settings: MetrologySettings = SETTINGS,
 ) -> list[Problems]:
     """Rows for an object on another's top, seat or shelves; `parent_cuboid` is a batch of one.
 
@@ -116,41 +107,32 @@ def place_on(
         parent_cuboid: the supporter's, in the world (m).
         height_m: of the camera above the floor.
         cost: of resting there, in nats.
-        settings: of metrology.
     """
-    tall = float(parent_cuboid.size_m[0, 2])
+    settings = observations.settings.placement
     bottom = float(parent_cuboid.base_m[0])
     names = (observations.categories[parent].name, observations.categories[index].name)
     footprint = _resting_place(parent_cuboid, _BACK_SHARE.get(names, 1.0))
-    rows = []
     odd = observations.categories[parent].seat_height_m is not None and often_carried(*names[::-1]) <= SELDOM_CARRIED
-    for base, sigma, level_cost in _levels(observations, parent, tall, odd, settings.placement):
-        for mode in modes_held(names[1], observations.meanings[index], "surface", settings.placement):
-            raised = standing_costs(names[1], mode, settings.placement)[1] - (
-                FLOOR_OBJECT_COST if names[1] in PORTABLE else 0.0
-            )
-            for turn in (0.0,) if mode.square else (0.0, np.pi / 2):
-                rows.append(
-                    row(
-                        observations,
-                        index,
-                        mode,
-                        camera_height_m=height_m,
-                        yaw_rad=float(parent_cuboid.yaw_rad[0]) + turn,
-                        parent=parent,
-                        base_m=bottom + base,
-                        base_sigma_m=sigma,
-                        footprint=footprint,
-                        footprint_sigma_m=settings.placement.footprint_sigma_m,
-                        extra=mode.cost
-                        + raised
-                        + level_cost
-                        + cost
-                        + (settings.placement.odd_on_seat_cost if odd else 0.0),
-                        settings=settings.fit,
-                    )
-                )
-    return rows
+    odd_cost = settings.odd_on_seat_cost if odd else 0.0
+    usual_cost = FLOOR_OBJECT_COST if names[1] in PORTABLE else 0.0
+    return [
+        row(
+            observations,
+            index,
+            mode,
+            camera_height_m=height_m,
+            yaw_rad=float(parent_cuboid.yaw_rad[0]) + turn,
+            parent=parent,
+            base_m=bottom + base,
+            base_sigma_m=sigma,
+            footprint=footprint,
+            footprint_sigma_m=settings.footprint_sigma_m,
+            extra=mode.cost + (standing_costs(names[1], mode, settings)[1] - usual_cost) + level_cost + cost + odd_cost,
+        )
+        for base, sigma, level_cost in _levels(observations, parent, float(parent_cuboid.size_m[0, 2]), odd)
+        for mode in modes_held(names[1], observations.meanings[index], "surface", settings)
+        for turn in ((0.0,) if mode.square else (0.0, np.pi / 2))
+    ]
 
 
 def _resting_place(parent_cuboid: Cuboids, back_share: float) -> Float[np.ndarray, "5"]:
@@ -163,43 +145,27 @@ def _resting_place(parent_cuboid: Cuboids, back_share: float) -> Float[np.ndarra
     return np.array([*moved, yaw, depth * back_share / 2, width / 2])
 
 
-def _levels(
-    observations: BoxObservations, parent: int, tall: float, odd: bool, settings: PlacementSettings
-) -> list[tuple[float, float, float]]:
-    """Heights above the supporter's base at which things lie on it: (height, sigma, cost).
-
-    Args:
-        observations: of all objects.
-        parent: the supporter.
-        tall: its height in metres.
-        odd: whether the thing is of a kind that seldom lies on seats.
-    """
-    category = observations.categories[parent]
+def _levels(observations: BoxObservations, parent: int, tall: float, odd: bool) -> list[tuple[float, float, float]]:
+    """Heights above the supporter's base at which things lie on it, odd ones on seats or not: (height, sigma, cost)."""
+    category, settings = observations.categories[parent], observations.settings.placement
     top = (tall, settings.top_sigma_m, 0.0)
     if category.seat_height_m is not None:
         seat = min(category.seat_height_m, 0.95 * tall)
         cost = 0.0 if category.supports_objects else settings.seats_without_support_flag_cost
-        leaning = (seat + 0.15, settings.seat_sigma_m, cost + settings.inner_level_cost)
         return [
             (seat, settings.seat_sigma_m, cost),
-            leaning,
+            (seat + 0.15, settings.seat_sigma_m, cost + settings.inner_level_cost),  # leaning
             (tall, settings.seat_sigma_m, cost + (settings.odd_on_back_cost if odd else settings.back_cost)),
         ]
     if category.name in WITH_BOARDS:
-        inner = [(share * tall, 0.06 * tall, settings.inner_level_cost) for share in (0.15, 0.4, 0.65)]
-        return [top, *inner]
+        return [top, *((share * tall, 0.06 * tall, settings.inner_level_cost) for share in (0.15, 0.4, 0.65))]
     if category is UNKNOWN:
         return [top, (0.55 * tall, 0.05, settings.inner_level_cost)]
     return [top]
 
 
 def place_on_wall(
-    observations: BoxObservations,
-    index: int,
-    height_m: float,
-    room: RoomExtent,
-    cost: float,
-    settings: MetrologySettings = SETTINGS,
+    observations: BoxObservations, index: int, height_m: float, room: RoomExtent, cost: float
 ) -> list[Problems]:
     """Rows for an object on the wall ahead, on the left and on the right.
 
@@ -212,10 +178,9 @@ def place_on_wall(
         height_m: of the camera above the floor.
         room: where the walls are, in the world (m).
         cost: of hanging there, in nats.
-        settings: of metrology.
     """
-    category = observations.categories[index]
-    door = category.name == "door"
+    name, settings = observations.categories[index].name, observations.settings.placement
+    door, middle = name == "door", _USUAL_MIDDLE_M.get(name, settings.middle_m)
     walls = (
         (-np.pi / 2, room.back_m, room.back_sigma, 0.0),
         (0.0, room.left_m, room.left_sigma, 0.5),
@@ -228,34 +193,23 @@ def place_on_wall(
             mode,
             camera_height_m=height_m,
             yaw_rad=yaw,
-            base_m=0.0 if door else _usual_base(category.name, mode, settings.placement),
-            base_sigma_m=0.0 if door else settings.placement.middle_sigma_m,
-            top_m=settings.placement.wall_top_m,
-            top_sigma_m=settings.placement.wall_top_sigma_m,
+            base_m=0.0 if door else max(0.05, middle - float(np.exp(mode.log_size[2])) / 2),
+            base_sigma_m=0.0 if door else settings.middle_sigma_m,
+            top_m=settings.wall_top_m,
+            top_sigma_m=settings.wall_top_sigma_m,
             wall_m=wall,
             wall_sigma=UNTOLD if door else sigma,
             footprint=room.footprint,
             footprint_sigma_m=UNTOLD if door else 0.4,
             extra=mode.cost + side_cost + cost,
-            settings=settings.fit,
         )
-        for mode in modes_held(category.name, observations.meanings[index], "wall", settings.placement)
+        for mode in modes_held(name, observations.meanings[index], "wall", settings)
         for yaw, wall, sigma, side_cost in walls
     ]
 
 
-def _usual_base(name: str, mode: SizeMode, settings: PlacementSettings) -> float:
-    middle = _USUAL_MIDDLE_M.get(name, settings.middle_m)
-    return max(0.05, middle - float(np.exp(mode.log_size[2])) / 2)
-
-
 def place_below_ceiling(
-    observations: BoxObservations,
-    index: int,
-    height_m: float,
-    room: RoomExtent,
-    cost: float,
-    settings: MetrologySettings = SETTINGS,
+    observations: BoxObservations, index: int, height_m: float, room: RoomExtent, cost: float
 ) -> list[Problems]:
     """Rows for an object hanging from the ceiling, over the things on the floor.
 
@@ -265,9 +219,8 @@ def place_below_ceiling(
         height_m: of the camera above the floor.
         room: how far it reaches, in the world (m).
         cost: of hanging there, in nats.
-        settings: of metrology.
     """
-    category = observations.categories[index]
+    name, settings = observations.categories[index].name, observations.settings.placement
     return [
         row(
             observations,
@@ -275,15 +228,14 @@ def place_below_ceiling(
             mode,
             camera_height_m=height_m,
             yaw_rad=yaw,
-            base_m=settings.placement.ceiling_m - float(np.exp(mode.log_size[2])),
+            base_m=settings.ceiling_m - float(np.exp(mode.log_size[2])),
             base_sigma_m=0.4,
-            top_m=settings.placement.ceiling_m,
-            top_sigma_m=settings.placement.ceiling_sigma_m,
+            top_m=settings.ceiling_m,
+            top_sigma_m=settings.ceiling_sigma_m,
             footprint=room.footprint,
             footprint_sigma_m=0.4,
             extra=mode.cost + cost,
-            settings=settings.fit,
         )
-        for mode in modes_held(category.name, observations.meanings[index], "ceiling", settings.placement)
+        for mode in modes_held(name, observations.meanings[index], "ceiling", settings)
         for yaw in ((0.0,) if mode.square else (0.0, np.pi / 2))
     ]

@@ -5,25 +5,17 @@ from dataclasses import replace
 import numpy as np
 
 from diorama_core.architecture.rac.arrangement import arrangement, inverse_depths
-from diorama_core.architecture.rac.proposals import proposals
 from diorama_core.architecture.rac.search import best_layout, borders_of, cell_costs, label_cells
-from diorama_core.architecture.walls.surface import measure_surface
-from tests.synthetic_rooms import box_room, cuboid, look, shoot
+from tests.architecture.rac.test_proposals import CAMERA, proposed
+from tests.synthetic_rooms import box_room, cuboid, look
 
-CAMERA = look(15, 8, fov_deg=80)
 ROOM = box_room(-2.0, 2.0, 4.0, 2.5)
 
 
-def looked_at(cuboids=()):
-    shot = shoot(CAMERA, ROOM, cuboids)
-    surface = measure_surface(shot.inputs.depth_m, CAMERA, shot.inputs.instances > 0)
-    return surface, proposals(surface)
-
-
 def test_the_best_layout_s_depth_is_that_of_the_empty_room():
-    surface, found = looked_at((cuboid("cabinet", (-0.6, 2.6, 0), (0.6, 1.0, 0.8)),))
+    surface, found = proposed(ROOM, (cuboid("cabinet", (-0.6, 2.6, 0), (0.6, 1.0, 0.8)),))
     layout = best_layout(surface, found, CAMERA)
-    empty, _ = looked_at()
+    empty, _ = proposed(ROOM)
     pixels = CAMERA.project(empty.points)
     off = np.abs(layout.depth_at(pixels) - empty.depth_m)
     assert np.quantile(off, 0.97) < 0.05
@@ -31,7 +23,7 @@ def test_the_best_layout_s_depth_is_that_of_the_empty_room():
 
 
 def test_what_hides_the_room_costs_nothing_behind_it_and_something_before_it():
-    surface, found = looked_at()
+    surface, found = proposed(ROOM)
     cells = arrangement(inverse_depths(found.normals, found.offsets, CAMERA), (640, 480))
     everything = np.ones(len(surface.points), bool)
     nothing = replace(found, segment=np.full(len(surface.points), -1))
@@ -42,24 +34,23 @@ def test_what_hides_the_room_costs_nothing_behind_it_and_something_before_it():
 
 
 def test_without_planes_there_is_no_layout():
-    surface, found = looked_at()
+    surface, found = proposed(ROOM)
     none = replace(found, normals=np.zeros((0, 3)), offsets=np.zeros(0), segment=np.full(len(surface.points), -1))
     assert best_layout(surface, none, CAMERA) is None
 
 
-PLANES = box_room(-2.0, 2.0, 4.0, 2.5)
 CELLS = arrangement(
-    inverse_depths(np.stack([p.normal for p in PLANES]), np.array([p.offset for p in PLANES]), look(15, 5)), (640, 480)
+    inverse_depths(np.stack([p.normal for p in ROOM]), np.array([p.offset for p in ROOM]), look(15, 5)), (640, 480)
 )
 
 
 def true_costs():
     """A convex room shows the nearest plane before the camera."""
-    costs = np.ones((len(CELLS.cells), len(PLANES)))
+    costs = np.ones((len(CELLS.cells), len(ROOM)))
     truth = []
     for k, cell in enumerate(CELLS.cells):
         middle = cell.corners.mean(axis=0, keepdims=True)
-        q = [float(CELLS.inverse_at(p, middle)[0]) for p in range(len(PLANES))]
+        q = [float(CELLS.inverse_at(p, middle)[0]) for p in range(len(ROOM))]
         truth.append(int(np.argmax(q)))
         costs[k, truth[-1]] = 0.0
     return costs, tuple(truth)
@@ -75,7 +66,7 @@ def test_planes_that_do_not_meet_there_may_not_be_neighbours():
     k = max(range(len(truth)), key=lambda c: len(borders_of(CELLS)[c]))
     wrong = costs.copy()
     wrong[k] = 0.1
-    wrong[k, (truth[k] + 1) % len(PLANES)] = 0.0  # a little cheaper, and impossible among these neighbours
+    wrong[k, (truth[k] + 1) % len(ROOM)] = 0.0  # a little cheaper, and impossible among these neighbours
     assert label_cells(wrong, borders_of(CELLS)) == truth
 
 

@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.architecture.single_view.room_cues import EDGE_THRESHOLD, gather_room_cues, segment_axes
+from tests.architecture.known_rooms import open_room
 from tests.architecture.single_view.plain_cues import CAMERA
-from tests.synthetic_rooms import box_room, cuboid, floor, look, shoot, wall
+from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 
 @given(axis=st.integers(0, 2), x=st.floats(-1.2, 1.2), y=st.floats(2.5, 5.0), z=st.floats(0.2, 2.2))
@@ -64,12 +65,7 @@ def test_an_unsure_mask_hides_its_whole_box() -> None:
 
 
 def test_a_slanted_wall_gives_its_direction() -> None:
-    planes = (
-        floor((-3, -3), (3, -3), (3, 5.6), (-3, 2.4)),
-        wall("left", (-3, -3), (-3, 2.4), 2.6),
-        wall("slanted", (-3, 2.4), (3, 5.6), 2.6),
-        wall("right", (3, 5.6), (3, -3), 2.6),
-    )
+    planes = open_room((-3, -3), (-3, 2.4), (3, 5.6), (3, -3))
     shot = shoot(look(0.0, 10.0, fov_deg=75.0, size=(480, 360)), planes)
     found = gather_room_cues(shot.inputs.photo.rgb, shot.camera, (), ())
     assert found.slants_rad == pytest.approx([np.arctan2(3.2, 6.0)], abs=np.deg2rad(6.0))

@@ -14,13 +14,15 @@ import pytest
 from diorama_core.architecture.single_view.settings import SETTINGS
 from diorama_core.architecture.single_view.stage import PhotoRoom, _push
 from diorama_core.architecture.walls.wall_candidates import WallCandidate
+from diorama_core.architecture.walls.wall_path import Run
 from diorama_core.artefacts import Inputs, ObjectGeometry, Photo
 from diorama_core.evaluation.metrics.architecture import architecture_scores
 from diorama_core.progress import CancelToken, Progress
 from diorama_core.provenance import RoomMethod, ScaleSource
 from diorama_core.scene.types import Support
+from tests.architecture.known_rooms import L_SHAPE, open_room
 from tests.architecture.single_view.plain_cues import cues
-from tests.synthetic_rooms import box_room, cuboid, floor, look, shoot, wall
+from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 FURNITURE = (cuboid("cabinet", (-0.6, 2.5, 0), (0.6, 0.8, 0.8)), cuboid("stand", (0.8, 2.2, 0), (0.5, 0.5, 0.9)))
 
@@ -180,22 +182,6 @@ def test_extreme_views_still_give_floor_and_wall(pitch):
     assert architecture.by_role("wall")
 
 
-L_SHAPE = (
-    floor((-2.2, -3), (2.6, -3), (2.6, 3), (0.3, 3), (0.3, 4.8), (-2.2, 4.8)),
-    wall("left", (-2.2, -3), (-2.2, 4.8), 2.6),
-    wall("far", (-2.2, 4.8), (0.3, 4.8), 2.6),
-    wall("corner", (0.3, 4.8), (0.3, 3), 2.6),
-    wall("near", (0.3, 3), (2.6, 3), 2.6),
-    wall("right", (2.6, 3), (2.6, -3), 2.6),
-)
-SLANTED = (
-    floor((-2, -3), (2.5, -3), (2.5, 4.6), (-2, 2.4)),
-    wall("left", (-2, -3), (-2, 2.4), 2.6),
-    wall("slanted", (-2, 2.4), (2.5, 4.6), 2.6),
-    wall("right", (2.5, 4.6), (2.5, -3), 2.6),
-)
-
-
 def test_an_l_shaped_room_keeps_its_protruding_corner():
     shot = shoot(look(0, 12, fov_deg=70), L_SHAPE, FURNITURE)
     estimate = reconstruct(shot)
@@ -206,7 +192,7 @@ def test_an_l_shaped_room_keeps_its_protruding_corner():
 
 
 def test_a_slanted_wall_is_found_slanted():
-    shot = shoot(look(0, 10, fov_deg=75), SLANTED)
+    shot = shoot(look(0, 10, fov_deg=75), open_room((-2, -3), (-2, 2.4), (2.5, 4.6), (2.5, -3)))
     estimate = reconstruct(shot)
     across = np.array([2.2, -4.5, 0.0]) / np.hypot(2.2, 4.5)
     assert max(w.normal @ across for w in estimate.architecture.by_role("wall")) > np.cos(np.deg2rad(6))
@@ -243,7 +229,7 @@ def pushed(out_m: float, weight: float, sure: float, *others: tuple[float, float
     high = np.array([[0.5, 3.0 + out, 0.8] for out, _ in known])
     found = cues(object_low=low, object_high=high, object_weights=np.array([w for _, w in known]))
     wall = WallCandidate(np.array([0.0, -1.0]), -3.0, np.zeros(0, dtype=bool), 0.0, 1.0)
-    return _push(wall, -1.0, 1.0, found, sure)
+    return _push(Run(wall, -1.0, 1.0), found, sure)
 
 
 def test_an_unsure_wall_gives_way_to_a_sure_object_and_a_sure_wall_does_not():

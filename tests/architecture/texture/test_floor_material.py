@@ -18,9 +18,16 @@ def floor(colour: tuple[float, float, float] = OAK, seed: int = 0) -> np.ndarray
     return (np.array(colour) + noise).clip(0, 255).astype(np.float32)
 
 
-def texels(colours: np.ndarray, contact: np.ndarray | None = None) -> np.ndarray:
-    seen = np.ones((SIZE, SIZE), dtype=bool)
-    return floor_texels(colours, seen, np.ones((SIZE, SIZE)), seen & False if contact is None else contact, PIXEL_M)
+def texels(colours: np.ndarray, contact: np.ndarray | bool = False, seen: np.ndarray | bool = True) -> np.ndarray:
+    seen, contact = (np.broadcast_to(mask, (SIZE, SIZE)) for mask in (seen, contact))
+    return floor_texels(colours, seen, np.ones((SIZE, SIZE)), contact, PIXEL_M)
+
+
+def assert_floor_is(colour, *pixels: tuple[int, tuple[int, int, int]]) -> None:
+    """Check the floor's colour among so many pixels of each colour, all over the photo."""
+    rgb = np.concatenate([np.full((count, 3), other) for count, other in pixels]).astype(np.uint8)
+    places = np.random.default_rng(0).uniform(0, 100, (len(rgb), 2))
+    assert np.allclose(np.array(floor_colour(rgb, places, 95.0)) * 255, colour, atol=2)
 
 
 def test_a_plain_floor_is_all_floor():
@@ -90,21 +97,16 @@ def test_black_is_hardly_a_floor():
 
 
 def test_nothing_seen_is_nothing_known():
-    seen = np.zeros((SIZE, SIZE), dtype=bool)
-    assert not floor_texels(floor(), seen, np.ones((SIZE, SIZE)), seen, PIXEL_M).any()
+    assert not texels(floor(), seen=False).any()
 
 
 def test_the_plain_colour_is_the_floors_and_not_a_shadows():
-    rgb = np.concatenate([np.full((300, 3), (150, 120, 90)), np.full((350, 3), 4)]).astype(np.uint8)
-    places = np.random.default_rng(0).uniform(0, 100, (650, 2))
-    assert np.allclose(np.array(floor_colour(rgb, places, 95.0)) * 255, (150, 120, 90), atol=2)
+    assert_floor_is((150, 120, 90), (300, (150, 120, 90)), (350, (4, 4, 4)))
 
 
 @pytest.mark.parametrize("unusual", [(90, 120, 190), (200, 60, 120), (70, 150, 90)])
 def test_boards_in_warm_light_are_likelier_than_what_no_floor_looks_like(unusual):
-    rgb = np.concatenate([np.full((300, 3), (200, 135, 75)), np.full((500, 3), unusual)]).astype(np.uint8)
-    places = np.random.default_rng(0).uniform(0, 100, (800, 2))
-    assert np.allclose(np.array(floor_colour(rgb, places, 95.0)) * 255, (200, 135, 75), atol=2)
+    assert_floor_is((200, 135, 75), (300, (200, 135, 75)), (500, unusual))
 
 
 def test_contact_is_a_little_below_masks_and_in_no_other():
@@ -134,15 +136,11 @@ def test_the_white_of_a_dark_photo_is_dark():
 
 @pytest.mark.parametrize(("light", "dark"), [((236, 196, 140), (133, 106, 72)), ((205, 200, 190), (110, 107, 101))])
 def test_a_dark_colour_that_a_lighter_one_covers_more_is_its_shade(light, dark):
-    rgb = np.concatenate([np.full((900, 3), light), np.full((400, 3), dark)]).astype(np.uint8)
-    places = np.random.default_rng(0).uniform(0, 100, (1300, 2))
-    assert np.allclose(np.array(floor_colour(rgb, places, 95.0)) * 255, light, atol=2)
+    assert_floor_is(light, (900, light), (400, dark))
 
 
 def test_a_dark_floor_beside_as_much_of_a_light_thing_stays_dark():
-    rgb = np.concatenate([np.full((500, 3), (236, 196, 140)), np.full((450, 3), (133, 106, 72))]).astype(np.uint8)
-    places = np.random.default_rng(0).uniform(0, 100, (950, 2))
-    assert np.allclose(np.array(floor_colour(rgb, places, 95.0)) * 255, (133, 106, 72), atol=2)
+    assert_floor_is((133, 106, 72), (500, (236, 196, 140)), (450, (133, 106, 72)))
 
 
 def test_a_floor_that_turns_gradually_from_daylight_to_lamplight_is_one():
@@ -161,14 +159,10 @@ def test_a_skirting_board_along_a_strip_of_floor_is_no_pattern_of_it_and_inlays_
     seen[92:108] = True  # 32 cm of floor and board
     board = colours.copy()
     board[92:99] = (235.0, 235.0, 230.0)
-    assert not strip_texels(board, seen)[92:99].any()
+    assert not texels(board, seen=seen)[92:99].any()
     inlaid = colours.copy()
     inlaid[92:108][:, np.arange(SIZE) % 8 < 3] = (235.0, 235.0, 230.0)
-    assert strip_texels(inlaid, seen)[94:106, 10:190].mean() > 0.9
-
-
-def strip_texels(colours: np.ndarray, seen: np.ndarray) -> np.ndarray:
-    return floor_texels(colours, seen, np.ones((SIZE, SIZE)), seen & False, PIXEL_M)
+    assert texels(inlaid, seen=seen)[94:106, 10:190].mean() > 0.9
 
 
 def test_boards_in_the_sun_are_the_floor_though_things_stand_in_the_grey_shade():

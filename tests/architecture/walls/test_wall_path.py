@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from diorama_core.architecture.from_depth import view_headings
 from diorama_core.architecture.walls.wall_candidates import find_walls
 from diorama_core.architecture.walls.wall_path import distance_along, heading, lies_on, wall_runs
+from tests.architecture.known_rooms import L_SHAPE
 from tests.architecture.walls.measured_room import TOP_M, plain_shot, surface_of
-from tests.synthetic_rooms import floor, look, shoot, wall
+from tests.synthetic_rooms import look, shoot
 
 
 def runs_of(shot):
@@ -38,15 +39,7 @@ def test_the_walls_of_a_box_lead_from_left_to_right() -> None:
 
 
 def test_a_narrow_return_between_two_walls_is_found() -> None:
-    planes = (
-        floor((-2.2, -3), (2.6, -3), (2.6, 3), (0.3, 3), (0.3, 4.8), (-2.2, 4.8)),
-        wall("left", (-2.2, -3), (-2.2, 4.8), TOP_M),
-        wall("far", (-2.2, 4.8), (0.3, 4.8), TOP_M),
-        wall("corner", (0.3, 4.8), (0.3, 3), TOP_M),
-        wall("near", (0.3, 3), (2.6, 3), TOP_M),
-        wall("right", (2.6, 3), (2.6, -3), TOP_M),
-    )
-    runs = runs_of(shoot(look(0, 4, 1.5, 85, (320, 240)), planes))
+    runs = runs_of(shoot(look(0, 4, 1.5, 85, (320, 240)), L_SHAPE))
     facing_us = [r.wall.offset for r in runs if r.wall.normal[1] < -0.99]
     assert facing_us == pytest.approx([-4.8, -3.0], abs=0.05)
     order = [r.first for r in runs]

@@ -40,6 +40,17 @@ def room_frame(v: View) -> np.ndarray:
     return world_frame(v.R_world_camera[2], v.R_world_camera[1])
 
 
+def degrees_between(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.rad2deg(np.arccos(np.clip(a @ b, -1, 1))))
+
+
+def rays(v: View) -> np.ndarray:
+    """World directions of unit depth through all pixels."""
+    k = v.intrinsics
+    x, y = np.meshgrid((np.arange(k.width) + 0.5 - k.cx) / k.fx, (np.arange(k.height) + 0.5 - k.cy) / k.fy)
+    return np.stack([x, y, np.ones_like(x)], axis=-1) @ v.R_world_camera.T
+
+
 def box_edges(low: tuple[float, ...], high: tuple[float, ...]) -> np.ndarray:
     """The twelve edges of an axis-aligned box as (12, 2, 3)."""
     corners = np.array([[(high if i >> axis & 1 else low)[axis] for axis in range(3)] for i in range(8)])
@@ -76,13 +87,11 @@ def segments_px(v: View, noise_px: float = 0.0, seed: int = 0) -> np.ndarray:
 
 def depth(v: View, boxes: tuple = FURNITURE, noise: float = 0.0, seed: int = 0) -> np.ndarray:
     """Depth in metres of the room with boxes in it, by slabs; `noise` grows with the square of depth."""
-    k = v.intrinsics
-    x, y = np.meshgrid((np.arange(k.width) + 0.5 - k.cx) / k.fx, (np.arange(k.height) + 0.5 - k.cy) / k.fy)
-    rays = np.stack([x, y, np.ones_like(x)], axis=-1) @ v.R_world_camera.T
-    rays = np.where(np.abs(rays) < 1e-9, 1e-9, rays)
+    along = rays(v)
+    along = np.where(np.abs(along) < 1e-9, 1e-9, along)
 
     def slabs(low: tuple[float, ...], high: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
-        first, second = (np.array(low) - v.position) / rays, (np.array(high) - v.position) / rays
+        first, second = (np.array(low) - v.position) / along, (np.array(high) - v.position) / along
         return np.minimum(first, second).max(axis=-1), np.maximum(first, second).min(axis=-1)
 
     nearest = slabs(*ROOM)[1]
@@ -96,18 +105,12 @@ def depth(v: View, boxes: tuple = FURNITURE, noise: float = 0.0, seed: int = 0) 
 def shaded_picture(v: View, boxes: tuple = FURNITURE) -> np.ndarray:
     """The room in flat greys by surface direction, so that edges show."""
     z = depth(v, boxes)
-    k = v.intrinsics
-    x, y = np.meshgrid((np.arange(k.width) + 0.5 - k.cx) / k.fx, (np.arange(k.height) + 0.5 - k.cy) / k.fy)
-    points = (np.stack([x, y, np.ones_like(x)], axis=-1) * z[..., None]) @ v.R_world_camera.T + v.position
-    planes = [(axis, value, 40 + 17 * n) for n, (axis, value) in enumerate(_faces(boxes))]
+    points = rays(v) * z[..., None] + v.position
     tone = np.full(z.shape, 30.0)
     distance = np.full(z.shape, np.inf)
-    for axis, value, grey in planes:
+    faces = [(axis, side[axis]) for box in (ROOM, *boxes) for side in box for axis in range(3)]
+    for n, (axis, value) in enumerate(faces):
         d = np.abs(points[..., axis] - value)
-        tone = np.where(d < distance - 1e-4, grey % 216 + 30, tone)
+        tone = np.where(d < distance - 1e-4, (40 + 17 * n) % 216 + 30, tone)
         distance = np.minimum(distance, d)
     return np.repeat(tone[..., None], 3, axis=-1).astype(np.uint8)
-
-
-def _faces(boxes: tuple) -> list[tuple[int, float]]:
-    return [(axis, side[axis]) for box in (ROOM, *boxes) for side in box for axis in range(3)]

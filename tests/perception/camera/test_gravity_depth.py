@@ -11,16 +11,12 @@ from diorama_core.perception.camera.frames import frame_difference_rad
 from diorama_core.perception.camera.gravity_depth import frame_from_depth
 from diorama_core.perception.camera.vanishing import prior_frame
 from tests.perception.camera import boxroom
-from tests.perception.camera.boxroom import depth, room_frame, view
+from tests.perception.camera.boxroom import degrees_between, depth, room_frame, view
 
 TABLE = ((-0.9, 1.1, 0.70), (1.0, 2.2, 0.75))
 WIDE_TABLE = ((-2.0, 0.6, 0.70), (2.0, 2.6, 0.75))
 LOW_TABLE = ((-0.9, 1.2, 0.35), (0.9, 2.6, 0.45))
 BED = ((-0.9, 1.6, 0.0), (0.9, 4.0, 0.5))
-
-
-def degrees_between(a: np.ndarray, b: np.ndarray) -> float:
-    return float(np.rad2deg(np.arccos(np.clip(a @ b, -1, 1))))
 
 
 @settings(max_examples=12)

@@ -16,13 +16,9 @@ from diorama_core.perception.camera.vanishing import (
     signed_sines,
 )
 from diorama_core.scene.types import Intrinsics
-from tests.perception.camera.boxroom import View, room_frame, segments_px, view
+from tests.perception.camera.boxroom import View, degrees_between, room_frame, segments_px, view
 
 PITCHES, ROLLS = st.floats(-5, 32), st.floats(-6, 6)
-
-
-def degrees_between(a: np.ndarray, b: np.ndarray) -> float:
-    return float(np.rad2deg(np.arccos(np.clip(a @ b, -1, 1))))
 
 
 def best(v: View, segments: np.ndarray, focal: float | None) -> FrameFit:

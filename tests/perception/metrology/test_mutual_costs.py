@@ -110,7 +110,9 @@ def test_before_beside_over_and_below_the_top_nothing_is_hidden(centre, height_m
 def test_what_seems_to_stand_behind_a_table_as_well_is_on_it(name, size_m) -> None:
     table = RequestedObject("table", (0.0, 2.0, 0.37), (0.8, 1.5, 0.74))
     items = (table, RequestedObject(name, (0.3, 2.05, 0.74 + size_m[2] / 2), size_m))
-    room = gather(seen(items, LOW_VIEW.R_world_camera, LOW_M), K.width, K.height)
+    objects = seen(items, LOW_VIEW.R_world_camera, LOW_M)
+    room = gather(objects, K.width, K.height)
     assert placement.place_all(room, LOW_VIEW, LOW_M)[1].supporter == 0
-    seen_through = replace(SETTINGS, placement=replace(SETTINGS.placement, through_top_cost=0.0))
-    assert placement.place_all(room, LOW_VIEW, LOW_M, seen_through)[1].supporter == placement.FLOOR
+    free = replace(SETTINGS, placement=replace(SETTINGS.placement, through_top_cost=0.0))
+    seen_through = gather(objects, K.width, K.height, free)
+    assert placement.place_all(seen_through, LOW_VIEW, LOW_M)[1].supporter == placement.FLOOR

@@ -5,12 +5,7 @@ import pytest
 
 from diorama_core.library.kinds import BROAD_SHARE, MAX_MODES, modes_of_kind
 from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN, Category, category
-from diorama_core.perception.metrology.priors import (
-    SizeMode,
-    modes_held,
-    plain_mode,
-    size_modes,
-)
+from diorama_core.perception.metrology.priors import SizeMode, modes_held, plain_mode, size_modes, standing_costs
 
 
 def usual_sizes(kind: Category) -> list[np.ndarray]:
@@ -31,6 +26,8 @@ def test_every_category_has_finite_modes_and_the_cheapest_first() -> None:
             assert (mode.sigma > 0).all()
             assert np.abs(mode.outline).max() == pytest.approx(0.5)
             assert mode.cost >= found[0].cost == 0
+            covariance = np.linalg.inv(mode.whitening.T @ mode.whitening)
+            assert np.allclose(np.sqrt(np.diag(covariance)), mode.sigma)
 
 
 def test_every_category_has_the_sizes_of_the_taxonomy_and_of_the_library() -> None:
@@ -84,3 +81,10 @@ def test_a_thing_without_a_name_has_the_sizes_of_what_it_may_be_where_it_is_held
     assert chair.log_size.tolist() == size_modes("chair")[0].log_size.tolist()
     assert chair.cost == 0 < desk.cost
     assert anything.cost > 0
+
+
+def test_small_plants_stand_on_furniture_and_tall_ones_on_the_floor() -> None:
+    small, tall = (plain_mode(np.log([0.2, 0.2, h]), np.full(3, 0.2), 0.0, "plant") for h in (0.25, 1.5))
+    assert standing_costs("plant", small)[0] > 3 > 0.5 > standing_costs("plant", small)[1]
+    assert standing_costs("plant", tall)[1] > 3 > 0.5 > standing_costs("plant", tall)[0]
+    assert standing_costs("chair", small) == (0.0, 0.0)
