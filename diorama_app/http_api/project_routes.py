@@ -42,11 +42,11 @@ POLL_S = 0.1
 project_router = APIRouter(prefix="/v1/projects", responses=error_docs(404, 500))
 
 
-def _opened(request: Request) -> OpenProjects:
+def _open_projects(request: Request) -> OpenProjects:
     return request.app.state.opened
 
 
-Opened = Annotated[OpenProjects, Depends(_opened)]
+Opened = Annotated[OpenProjects, Depends(_open_projects)]
 
 
 def _session(opened: Opened, name: str) -> EditorSession:

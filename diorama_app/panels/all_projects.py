@@ -8,7 +8,7 @@ from pathlib import Path
 import viser
 
 from diorama_app.panels.fields import options_html
-from diorama_app.panels.projects import is_open, listed_folder, visit_listed
+from diorama_app.panels.projects import folder_in_list, is_open, visit_listed
 from diorama_app.projects import manage
 from diorama_app.projects.pictures import project_picture
 from diorama_app.session.client import Client
@@ -105,13 +105,13 @@ class AllProjects:
         elif action.do == "unbin":
             self._restore(action.arg)
         elif action.do == "rename":
-            self._rename(listed_folder(session, action.pair[0]), action.pair[1])
+            self._rename(folder_in_list(session, action.pair[0]), action.pair[1])
         elif action.do == "open":
-            listed_folder(session, action.arg)  # refused while the page is still open
+            folder_in_list(session, action.arg)  # refused while the page is still open
             self.close()
             visit_listed(self._client, action.arg)
         elif action.do in ("copy", "bin"):
-            self._with_listed(action.do, listed_folder(session, action.arg))
+            self._with_listed(action.do, folder_in_list(session, action.arg))
         session.glances.forget()
         session.refresh_panels()
 

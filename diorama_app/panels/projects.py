@@ -117,7 +117,7 @@ class Projects:
         session.refresh_panels()
 
 
-def listed_folder(session: EditorSession, address: str) -> Path:
+def folder_in_list(session: EditorSession, address: str) -> Path:
     """The folder of a project that is listed: a page must not reach outside the projects' folder."""
     folder = project_care.find_project(session.projects_dir, address)
     if folder is None:
@@ -127,7 +127,7 @@ def listed_folder(session: EditorSession, address: str) -> Path:
 
 def visit_listed(client: Client, address: str) -> None:
     """Go to a project that is listed."""
-    project = Project.open(listed_folder(client.session, address))
+    project = Project.open(folder_in_list(client.session, address))
     client.session.visit(client, project, _("Opened {name}.").format(name=project.name))
 
 

@@ -12,7 +12,7 @@ from functools import cache
 import viser
 
 from diorama_app.panels.fields import PageScript, add_hidden_upload
-from diorama_app.panels.projects import listed_folder, visit_listed
+from diorama_app.panels.projects import folder_in_list, visit_listed
 from diorama_app.projects.manage import address_of, name_of, recent_projects
 from diorama_app.projects.pictures import jpeg_uri
 from diorama_app.reconstruction.opening_job import open_file
@@ -125,7 +125,7 @@ class StartPage:
         elif action.do == "projects":
             client.open_projects()
         elif action.do == "project":
-            listed_folder(client.session, action.arg)  # refused while the page is still open
+            folder_in_list(client.session, action.arg)  # refused while the page is still open
             self.close()
             visit_listed(client, action.arg)
 

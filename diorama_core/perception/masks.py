@@ -17,7 +17,8 @@ from jaxtyping import Bool, Float32, UInt8
 
 from diorama_core.artefacts import Box, DetectedObject, Inputs, LabelledBox
 from diorama_core.models.outliner import BoxOutliner, own_outliner, pixels_of, warp_to_photo
-from diorama_core.perception.drawn_boxes import ends_of_objects
+from diorama_core.perception.drawn_boxes import SETTINGS as DRAWN_BOXES
+from diorama_core.perception.drawn_boxes import DrawnBoxSettings, ends_of_objects
 from diorama_core.progress import Progress
 
 _MIN_SHARE = 0.02
@@ -39,6 +40,8 @@ class EmbeddedMasks:
     outliner: BoxOutliner = field(default_factory=own_outliner)
     crop_px: int = 240
     """Longest side at which a box is looked at by GrabCut."""
+    drawing: DrawnBoxSettings = DRAWN_BOXES
+    """How boxes that were drawn roughly become exact."""
 
     def segment(self, inputs: Inputs, progress: Progress) -> tuple[DetectedObject, ...]:
         """One object per instance the user masked and per box no mask belongs to, in the order given.
@@ -54,7 +57,7 @@ class EmbeddedMasks:
         windows = self.outliner.windows(rgb, drawn)
         results: Outlined = []
         for done, (box, share, ends) in enumerate(
-            zip(drawn, windows, ends_of_objects(drawn, windows, shape), strict=True)
+            zip(drawn, windows, ends_of_objects(drawn, windows, shape, self.drawing), strict=True)
         ):
             progress.report(done / len(boxes), f"Outlining objects ({done + 1} of {len(boxes)})")
             results.append((*self._segment(rgb, warp_to_photo(share, box, ends, shape), ends), ends))

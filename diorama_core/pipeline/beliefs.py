@@ -12,7 +12,7 @@ from diorama_core.arrangement.supports import DecidedSupports
 from diorama_core.artefacts import Inputs, ObjectGeometry, PosedCandidates
 from diorama_core.library.record import ShapeLibrary, record_of
 from diorama_core.library.taxonomy import UNKNOWN, having
-from diorama_core.perception.drawn_boxes import drawn_box
+from diorama_core.perception.drawn_boxes import find_drawn_box
 from diorama_core.pipeline.scene_steps import FinishedScene
 from diorama_core.scene.belief import CERTAIN_FRONT, Belief, Shares
 from diorama_core.scene.room_edits import KNOWN_LENGTH_SIGMA
@@ -82,7 +82,7 @@ def with_beliefs(
 
     def with_belief(item: SceneObject) -> SceneObject:
         choice, edge = supports.choices.get(item.id), scene.support_of(item.id)
-        drawn = None if item.box_px is None else drawn_box(inputs.boxes, item.box_px)
+        drawn = None if item.box_px is None else find_drawn_box(inputs.boxes, item.box_px)
         is_named = drawn is not None and drawn.category != UNKNOWN.name
         holders = {} if choice is None or edge is None else choice.probabilities
         sigma = _distance_sigma(scene, item, noise, settings, foot_seen=item.id in feet)

@@ -16,7 +16,7 @@ from jaxtyping import Bool, Float, UInt8
 from diorama_core.artefacts import DetectedObject, Inputs, LabelledBox, ObjectGeometry, PosedCandidates
 from diorama_core.errors import InputError
 from diorama_core.library.record import ShapeLibrary
-from diorama_core.perception.drawn_boxes import drawn_box
+from diorama_core.perception.drawn_boxes import find_drawn_box
 from diorama_core.pipeline.fallback import with_usable_networks
 from diorama_core.pipeline.plan import evaluate
 from diorama_core.pipeline.presets import stages_for
@@ -144,7 +144,7 @@ def _reconstruct(
 
 def _says(inputs: Inputs, known: DetectedObject, box: LabelledBox, mask: Bool[np.ndarray, "h w"] | None) -> bool:
     """Whether a box, its name and its outline are what the build knew of the object."""
-    drawn = drawn_box(inputs.boxes, known.box)
+    drawn = find_drawn_box(inputs.boxes, known.box)
     same_box = drawn is not None and (drawn.box, drawn.category, drawn.label) == (box.box, box.category, box.label)
     return same_box and (mask is None or np.array_equal(mask, known.mask))
 

@@ -7,7 +7,7 @@ import pytest
 
 from diorama_core.artefacts import Box, LabelledBox
 from diorama_core.models.outliner import MARGIN, SIDE, resample
-from diorama_core.perception.drawn_boxes import drawn_box, ends_of_objects
+from diorama_core.perception.drawn_boxes import ends_of_objects, find_drawn_box
 
 PHOTO = (480, 640)
 OBJECTS: list[Box] = [(60.0, 80.0, 180.0, 200.0), (250.0, 60.0, 420.0, 330.0), (330.0, 200.0, 600.0, 400.0)]
@@ -80,6 +80,6 @@ def test_no_box_is_moved_farther_than_its_window() -> None:
 
 def test_the_drawn_box_of_an_object_is_the_one_that_overlaps_it_most() -> None:
     boxes = [LabelledBox(box, "chair", "chair") for box in OBJECTS]
-    assert drawn_box(boxes, (255.0, 64.0, 410.0, 335.0)) is boxes[1]
-    assert drawn_box(boxes, (0.0, 0.0, 10.0, 10.0)) is None
-    assert drawn_box([], OBJECTS[0]) is None
+    assert find_drawn_box(boxes, (255.0, 64.0, 410.0, 335.0)) is boxes[1]
+    assert find_drawn_box(boxes, (0.0, 0.0, 10.0, 10.0)) is None
+    assert find_drawn_box([], OBJECTS[0]) is None

@@ -117,7 +117,7 @@ class Edges:
         return to_child, to_supporter
 
 
-NEAR_M = 0.1
+WATCHED_M = 0.1
 """Boxes with smaller gaps are watched."""
 
 
@@ -207,9 +207,9 @@ def refinement_stage(state: State) -> None:
     seen = centre[:n] + np.inf
     for step, rate in enumerate(schedule.rates()):
         centre[:n] = state.p
-        # Pairs further apart than NEAR_M cannot touch before something has moved by half of that.
-        if step % 10 == 0 and np.abs(state.p - seen).max(initial=0.0) > NEAR_M / 4:
-            pairs = gradients.candidate_pairs(R, centre, size, apart, NEAR_M)
+        # Pairs further apart than WATCHED_M cannot touch before something has moved by half of that.
+        if step % 10 == 0 and np.abs(state.p - seen).max(initial=0.0) > WATCHED_M / 4:
+            pairs = gradients.candidate_pairs(R, centre, size, apart, WATCHED_M)
             boxes, links = gradients.BoxPairs.of(R, size, pairs, walls_from=n), gradients.incidence(pairs, len(centre))
             seen = state.p.copy()
         value, gradient = cost.value_and_gradient(state.p)

@@ -65,7 +65,7 @@ class MaskRefinement:
             return scene, report
         seen = [observed.object(name).pose for name in problem.ids]
         priors = [
-            PosePrior(scene.camera.position, self._expected(pose, scale), self.precision, self.settings)
+            PosePrior(scene.camera.position, self._prior_pose(pose, scale), self.precision, self.settings)
             for pose, scale in zip(seen, problem.scale, strict=True)
         ]
         picture = self._picture(scene, scene.camera, problem, detected_objects)
@@ -79,7 +79,7 @@ class MaskRefinement:
         report = replace(report, seconds=report.seconds + time.perf_counter() - begun)
         return edits.place(scene, now.free_poses), _update_report(report, as_observed, now, scene.camera)
 
-    def _expected(self, seen: Pose, settled_scale: Float[np.ndarray, "3"]) -> Pose:
+    def _prior_pose(self, seen: Pose, settled_scale: Float[np.ndarray, "3"]) -> Pose:
         """The observed pose; of measured objects as high as the layout made them, which knows what was hidden below."""
         if self.precision.sizes_follow:
             return seen

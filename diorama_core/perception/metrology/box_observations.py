@@ -14,7 +14,6 @@ from diorama_core.geometry.casting import camera_rays
 from diorama_core.geometry.projection import NEAR_M
 from diorama_core.library.taxonomy import Category, category
 from diorama_core.models.seen_depth import SeenDepth
-from diorama_core.perception.drawn_boxes import BORDER_SHARE
 from diorama_core.perception.metrology.priors import SizeMode, size_modes
 from diorama_core.perception.metrology.problem import UNTOLD, View
 from diorama_core.perception.metrology.settings import SETTINGS, BoxObservationSettings, MetrologySettings
@@ -144,7 +143,7 @@ def gather(
     extent = np.tile(boxes[:, 2:] - boxes[:, :2], 2)
     sigma = observed.share_sigma * extent + observed.pixel_sigma * max(width, height) / 640
     border = np.array([0.0, 0.0, width, height])
-    truncated = np.abs(boxes - border) <= BORDER_SHARE * max(width, height)
+    truncated = np.abs(boxes - border) <= observed.border_share * max(width, height)
     # A box that ends clearly lower is in front, on the same floor.
     in_front = boxes[None, :, 3] > boxes[:, None, 3] + observed.clearly_lower * height
     covered = _find_covered_edges(boxes, in_front, observed)

@@ -13,6 +13,8 @@ class BoxObservationSettings:
     pixel_sigma: float = 3.0
     """By picture 640 pixels wide, added to the share."""
     min_box_px: float = 2.0
+    border_share: float = 0.006
+    """An edge so near to the border of the photo, as a share of its longer side, is cut there."""
     covered: float = 0.65
     """Share of an edge that something in front must cover to hide it."""
     strip: float = 0.15
