@@ -38,7 +38,7 @@ class DrawnBoxSettings:
     border_share: float = METROLOGY.observed.border_share
     """An edge so near to the border of the photo, as a share of its longer side, is that border."""
     deviations: float = 2.0
-    """What the outline shows to be cut by the border, and was drawn to end so near to it, is cut there."""
+    """What the outline shows to be cut by the border, and was drawn to end at most so many before it, is cut there."""
 
 
 SETTINGS = DrawnBoxSettings()
@@ -69,8 +69,8 @@ def ends_of_objects(
     drawing = drawing_variances[np.argmax(likelihood.sum(axis=1))]
     off, error = np.where(free, off, 0.0), np.where(free, error, 1.0)
     moved = drawn + drawing / (drawing + error**2) * off * sides
-    uncertain_px = settings.deviations * np.sqrt(drawing + error**2) * sides
-    cut = free & (np.abs(drawn + off * sides - border) <= near) & (np.abs(drawn - border) <= near + uncertain_px)
+    rough_px = settings.deviations * np.sqrt(drawing) * sides
+    cut = free & (np.abs(drawn + off * sides - border) <= near) & (np.abs(drawn - border) <= near + rough_px)
     ends = np.clip(np.where(cut, border, moved), 0.0, np.tile(border[2:], 2))
     return [(float(a), float(b), float(c), float(d)) for a, b, c, d in ends]
 
