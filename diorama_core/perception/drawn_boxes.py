@@ -35,6 +35,8 @@ class DrawnBoxSettings:
     """Degrees of freedom of the errors (Student's t): some outlines are of something else."""
     drawing_errors: tuple[float, ...] = (0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1)
     """Standard deviations that are compared of how a photo's boxes were drawn, as shares of their sides."""
+    least_edges: int = 12
+    """Fewer do not tell how carefully they were drawn: a box that is drawn alone is taken as it is."""
     border_share: float = METROLOGY.observed.border_share
     """An edge so near to the border of the photo, as a share of its longer side, is that border."""
     deviations: float = 2.0
@@ -63,6 +65,8 @@ def ends_of_objects(
     edges = np.array([_edges(window) for window in windows]).reshape(-1, 2, 4)
     off, error = edges[:, 0], np.hypot(settings.least_error, edges[:, 1])
     free = np.isfinite(off + error) & (np.abs(drawn - border) > near)
+    if free.sum() < settings.least_edges:
+        return list(boxes)
     drawing_variances, freedom = np.array(settings.drawing_errors) ** 2, settings.freedom
     variance = drawing_variances[:, None] + error[free] ** 2
     likelihood = -np.log(variance) / 2 - (freedom + 1) / 2 * np.log1p(off[free] ** 2 / variance / freedom)

@@ -43,6 +43,11 @@ def test_roughly_drawn_boxes_come_to_the_outlines(seed: int) -> None:
     assert off(ends_of_objects(drawn, windows, PHOTO)) < 0.6 * off(drawn)
 
 
+def test_a_box_that_is_drawn_alone_is_taken_as_it_is() -> None:
+    drawn = [roughly(OBJECTS[0], np.random.default_rng(0), 0.08)]
+    assert ends_of_objects(drawn, [window_of(OBJECTS[0], drawn[0])], PHOTO) == drawn
+
+
 def test_unsure_outlines_move_a_box_less() -> None:
     drawn = [(x1 + 12.0, y1 - 10.0, x2 - 10.0, y2 + 12.0) for x1, y1, x2, y2 in OBJECTS]
     sharp, soft = (
@@ -58,9 +63,9 @@ def test_what_goes_on_beyond_its_window_or_is_not_seen_keeps_its_box() -> None:
 
 
 def test_an_edge_at_the_border_of_the_photo_stays_there() -> None:
-    drawn, ends = (0.0, 100.0, 150.0, 220.0), (20.0, 100.0, 150.0, 220.0)
-    (moved,) = ends_of_objects([drawn], [window_of(ends, drawn)], PHOTO)
-    assert moved[0] == 0.0
+    drawn, ends = [(0.0, 100.0, 150.0, 220.0), *OBJECTS], [(20.0, 90.0, 160.0, 210.0), *OBJECTS]
+    moved = ends_of_objects(drawn, [window_of(item, box) for item, box in zip(ends, drawn, strict=True)], PHOTO)
+    assert moved[0][0] == 0.0
 
 
 def test_what_the_border_of_the_photo_cuts_ends_there_however_roughly_it_was_drawn() -> None:
