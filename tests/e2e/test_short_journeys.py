@@ -74,11 +74,20 @@ def export(hand: Hand, tmp_path: Path) -> None:
     assert len(model.geometry) >= len(scene.objects)
 
 
+def nearest_point(editor: EditorPage, item: SceneObject) -> tuple[float, float]:
+    """Where the page shows what of an object is nearest to the camera: its middle may be the air below a table."""
+    camera = editor.session.scene.camera
+    assert camera is not None
+    faces = editor.session.library.mesh(item.shape_id).triangles_center
+    points = trimesh.transform_points(faces, item.pose.matrix)
+    return editor.place_of(points[np.linalg.norm(points - camera.position, axis=1).argmin()])
+
+
 def click_object(hand: Hand, item: SceneObject) -> None:
     """In the view; what something hides is clicked in the list."""
     editor = hand.editor
     editor.settle()
-    at = editor.place_of(item.pose.position)
+    at = nearest_point(editor, item)
     hand.click(at, f"the {item.label} in the view")
     editor.page.wait_for_timeout(400)
     if editor.selection[-1:] != (item.id,):
@@ -135,7 +144,7 @@ def test_from_a_photo_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
     hand.click(page.locator(".dio .tile:not(.on)[data-do=swap]").first, "another shape")
     editor.until(lambda: session.scene.object(chosen.id).shape_id != chosen.shape_id, "swapped")
     editor.settle()
-    start = editor.place_of(session.scene.object(chosen.id).pose.position)
+    start = nearest_point(editor, session.scene.object(chosen.id))
     hand.drag(start, (start[0] + 60, start[1] + 25), f"the {chosen.label}")
     editor.until(
         lambda: not np.allclose(session.scene.object(chosen.id).pose.position, chosen.pose.position, atol=0.02), "moved"
