@@ -17,7 +17,7 @@ from typing import Any
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import Weights, checkpoint_arguments, read_checkpoint, write_graph
+from diorama_core.models.onnx_export import CheckpointPart, checkpoint_arguments, read_checkpoint, write_graph
 
 HEAD = 64
 """Channels of an attention head in every CLIP transformer."""
@@ -26,7 +26,7 @@ PREFIXES = ("duoduoclip.visual.", "visual.")
 SETTINGS = ("model", "network", "layers_threshold")
 
 
-class ShapeTower(Weights):
+class ShapeTower(CheckpointPart):
     """Normalised views [1, V, 3, 224, 224] of one shape to its vector [1, 512]."""
 
     def __init__(self, weights: Mapping[str, torch.Tensor], alone: int) -> None:

@@ -17,7 +17,7 @@ from typing import Any
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import Weights, checkpoint_arguments, read_checkpoint, write_graph
+from diorama_core.models.onnx_export import CheckpointPart, checkpoint_arguments, read_checkpoint, write_graph
 
 SIDE, INNER_SIDE = 224, 256
 """Of the crops, and of what the backbone enlarges them to."""
@@ -25,7 +25,7 @@ STAGES = (1, 2, 2, 2)
 """Strides of the residual stages, two blocks each, after a first convolution of stride 2."""
 
 
-class Backbone(Weights):
+class Backbone(CheckpointPart):
     """Crops [b, 3, 224, 224], CLIP's statistics, to features [b, 256, 16, 16]."""
 
     def _normed(self, x: torch.Tensor, name: str) -> torch.Tensor:
@@ -51,7 +51,7 @@ class Backbone(Weights):
         return functional.conv2d(x, self._w("layer4_outconv.weight"))
 
 
-class Regressor(Weights):
+class Regressor(CheckpointPart):
     """Features [n, 512] of matching patches (photo's first) to scale [n, 1] and unit (cos, sin) [n, 2]."""
 
     def _mlp(self, x: torch.Tensor, name: str) -> torch.Tensor:

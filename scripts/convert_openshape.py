@@ -16,7 +16,7 @@ from typing import Any
 import torch
 from torch.nn import functional
 
-from diorama_core.models.onnx_export import Weights, checkpoint_arguments, read_checkpoint, write_graph
+from diorama_core.models.onnx_export import CheckpointPart, checkpoint_arguments, read_checkpoint, write_graph
 from diorama_core.models.openshape import NEIGHBOURS, PATCHES
 
 HEAD = 64
@@ -25,7 +25,7 @@ PREFIXES = ("module.", "pc_encoder.", "")
 FIRST = "ppat.cls_token"
 
 
-class PointTower(Weights):
+class PointTower(CheckpointPart):
     """Middles [1, p, 3] and patches [1, p, k, 9] of one shape to its vector [1, 1280]."""
 
     def __init__(self, weights: Mapping[str, torch.Tensor]) -> None:

@@ -47,7 +47,7 @@ def checkpoint_arguments(about: str | None, given: list[str] | None) -> argparse
     return parser.parse_args(given)
 
 
-class Weights(nn.Module):
+class CheckpointPart(nn.Module):
     """A network that is rebuilt from the weights of a checkpoint, and the layers that use them by name."""
 
     def __init__(self, weights: Mapping[str, torch.Tensor]) -> None:
