@@ -24,6 +24,10 @@ def parse_length(words: str, unit: Unit) -> float:
 
     Bare numbers are in the unit.
 
+    Args:
+        words: as they were written.
+        unit: of bare numbers.
+
     Raises:
         InputError: it is not a length.
     """

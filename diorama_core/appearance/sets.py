@@ -48,7 +48,13 @@ def share_materials(
     sets: Sequence[Sequence[str]],
     seen: Mapping[tuple[str, str], float],
 ) -> dict[str, tuple[PhotoMaterial, ...]]:
-    """The materials by object, each slot of things of a set as the member shows it that sees it best."""
+    """The materials by object, each slot of things of a set as the member shows it that sees it best.
+
+    Args:
+        materials: of every object, by its id.
+        sets: ids of things of one shape.
+        seen: pixels that show an object's slot, by the object's id and the slot's name.
+    """
     shared = dict(materials)
     for members in sets:
         mains = {i: m.colour for i in members for m in materials.get(i, ()) if m.main}

@@ -166,7 +166,13 @@ def slot_pixels(
 def whole_pixels(
     view: SurfaceView, slots: tuple[Slot, ...], visible: Bool[np.ndarray, "h w"]
 ) -> tuple[SlotPixels, ...]:
-    """All that is seen of a small thing as its main slot, of one colour; none where that is hardly anything."""
+    """All that is seen of a small thing as its main slot, of one colour; none where that is hardly anything.
+
+    Args:
+        view: The shape in its pose.
+        slots: Its slots.
+        visible: The object's inner pixels, without what stands before it.
+    """
     seen = view.crop(visible) & (view.slot >= 0)
     if np.count_nonzero(seen) * view.step**2 < MIN_OF_WHOLE:
         return ()
@@ -273,7 +279,13 @@ def _is_near(difference: np.ndarray) -> np.ndarray:
 
 
 def shade_of(view: SurfaceView, pixels: SlotPixels, rgb: UInt8[np.ndarray, "h w 3"]) -> Shade:
-    """How bright the slot is at each of its normals."""
+    """How bright the slot is at each of its normals.
+
+    Args:
+        view: The shape in its pose.
+        pixels: The slot's.
+        rgb: The photo.
+    """
     linear = luminance(srgb_to_linear(view.crop(rgb)[pixels.near] / 255.0))
     label, count = cells_of(np.round(view.normals_world[pixels.near] / SETTINGS.normal_cell))
     of = [label == k for k in np.flatnonzero(count >= SETTINGS.min_face_pixels)]

@@ -243,7 +243,13 @@ class ObservationNoise:
     def tolerance_m(
         self, camera: Camera | None, position: Float[np.ndarray, "3"], direction: Float[np.ndarray, "3"]
     ) -> float:
-        """Two standard deviations of a position in one direction of the world; without a camera, those across."""
+        """Two standard deviations of a position in one direction of the world; without a camera, those across.
+
+        Args:
+            camera: in the world.
+            position: of the object, in the world (m).
+            direction: unit, in the world.
+        """
         if camera is None:
             return 2.0 * self.across_m
         sight = position - camera.position

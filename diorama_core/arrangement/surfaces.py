@@ -77,7 +77,13 @@ class RestingSurface:
     def transform(
         self, R: Float[np.ndarray, "3 3"], p: Float[np.ndarray, "3"], scale: Float[np.ndarray, "3"]
     ) -> RestingSurface:
-        """The surface, in the world, of an owner with this rotation to it, this centre and this scale."""
+        """The surface, in the world, of an owner with this rotation to it, this centre and this scale.
+
+        Args:
+            R: rotation (3, 3) from the owner's frame to the world.
+            p: the owner's centre in the world (m).
+            scale: per axis of the owner.
+        """
         if self.of_plane:
             return self
         axis = int(np.abs(self.normal).argmax())
@@ -408,7 +414,13 @@ def _most_plausible(
 
 
 def surfaces_below(item: SceneObject, other: SceneObject, shape: Shape) -> list[RestingSurface]:
-    """Surfaces of another object, in the world, that lie below an object."""
+    """Surfaces of another object, in the world, that lie below an object.
+
+    Args:
+        item: what may rest on them.
+        other: whose they are.
+        shape: the other's.
+    """
     if other.id == item.id:
         return []
     candidates = (surface.to_world(other.pose) for surface in object_surfaces(shape, other))

@@ -222,7 +222,11 @@ SUFFIXES = (
 
 
 def scan_in(parts: Sequence[Part]) -> PointCloud | None:
-    """The points of a scan, where the parts of a file, in the world, are one; None where they are modelled."""
+    """The points of a scan, where the parts of a file, in the world, are one; None where they are modelled.
+
+    Args:
+        parts: in the world, +Z up, metres.
+    """
     meshes = [p.whole for p in parts]
     if not meshes:
         return None

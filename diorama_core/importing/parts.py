@@ -71,6 +71,10 @@ def parts_of_gltf(path: Path, unit_m: float | None = None) -> tuple[tuple[Part, 
     """Objects of a GLB or glTF file, and notes; raises `InputError` when it cannot be read.
 
     Without `unit_m` the format is believed, unless the scene would be larger than a hall.
+
+    Args:
+        path: The file.
+        unit_m: Metres in one unit of it; None believes the format, unless the scene would be larger than a hall.
     """
     return _to_metres(_model(path), Z_UP, unit_m)
 

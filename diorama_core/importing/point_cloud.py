@@ -92,7 +92,11 @@ def to_metres(cloud: PointCloud) -> PointCloud:
 
 
 def without_floaters(points: Float[np.ndarray, "n 3"]) -> tuple[Float[np.ndarray, "m 3"], tuple[str, ...]]:
-    """Finite points without those that float alone: reflections, dust, and what networks dream up; and the note."""
+    """Finite points without those that float alone: reflections, dust, and what networks dream up; and the note.
+
+    Args:
+        points: finite, in any unit.
+    """
     some = points[:: max(1, len(points) // ASKED)]
     nearest = cKDTree(points).query(some, k=[2])[0] if len(points) > 1 else np.zeros(1)
     cell = ALONE * float(np.median(nearest))
@@ -152,7 +156,12 @@ UNITS = (
 
 
 def likely_unit(points: Float[np.ndarray, "n 3"], up: Float[np.ndarray, "3"] | None) -> Unit:
-    """The unit in which the points are most likely a room; `up` is against gravity, along an axis."""
+    """The unit in which the points are most likely a room; `up` is against gravity, along an axis.
+
+    Args:
+        points: in that unit.
+        up: against gravity, along an axis; None where it is not known.
+    """
     low, high = np.quantile(points, [0.005, 0.995], axis=0)
     extent = np.maximum(high - low, 1e-9)
     if up is not None:
@@ -185,6 +194,10 @@ def frame_of_scene(raw: RawModel, unit_m: float | None = None) -> tuple[Float[np
     """The frame and unit of a room's scene to the world (+Z up, metres), and notes about what had to be guessed.
 
     Without `unit_m` it is what the format says or the size makes likely.
+
+    Args:
+        raw: A scene of a room, not a single model.
+        unit_m: Metres in one unit of the file; None takes what the format says or the size makes likely.
     """
     promised = max(AXES, key=lambda axis: raw.convention.up.get(axis, 0.0))
     extents = np.asarray(raw.scene.extents, float)

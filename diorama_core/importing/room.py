@@ -259,7 +259,12 @@ class Face:
 
 
 def slab_role(part: Part, everything: Float[np.ndarray, "2 3"]) -> PlaneRole | None:
-    """What a part that nobody named is within the bounds of everything: floor, wall or ceiling; None for furniture."""
+    """What a part that nobody named is within the bounds of everything: floor, wall or ceiling; None for furniture.
+
+    Args:
+        part: in the world.
+        everything: bounds of the whole file.
+    """
     low, high = part.whole.bounds
     size, span = high - low, everything[1] - everything[0]
     if size[2] < SLAB_M and (size[:2] > MIN_WALL_M).all() and np.prod(size[:2]) > COVERS * np.prod(span[:2]):
@@ -285,7 +290,12 @@ def _is_slab(part: Part, axis: int) -> bool:
 
 
 def shell_planes(part: Part, middle: Float[np.ndarray, "3"]) -> tuple[Plane, ...] | None:
-    """Floor, walls and ceiling of a mesh that is a room's shell, facing its middle; None where it is furniture."""
+    """Floor, walls and ceiling of a mesh that is a room's shell, facing its middle; None where it is furniture.
+
+    Args:
+        part: in the world.
+        middle: of the room; planes face it.
+    """
     x, y, height = part.whole.extents
     if min(x, y) < SHELL_M or height < MIN_WALL_HEIGHT_M:
         return None

@@ -140,7 +140,13 @@ def name_floors(
     sections: Sequence[tuple[str, Float[np.ndarray, "3"]]],
     walls: Sequence[MeasuredWall],
 ) -> tuple[MeasuredFloor, ...]:
-    """Floors by the names of the sections on them; one of several sections is parted by the walls between them."""
+    """Floors by the names of the sections on them; one of several sections is parted by the walls between them.
+
+    Args:
+        floors: as measured.
+        sections: names with their middles in the world.
+        walls: of the home.
+    """
     if not floors or not sections:
         return tuple(floors)
     outlines, heights = [f.outline for f in floors], [f.height_m for f in floors]

@@ -102,6 +102,11 @@ class Recogniser:
         """Boxes to choose from where somebody points: several of one object, each as one look at the picture saw it.
 
         Arguments are those of `propose`.
+
+        Args:
+            rgb: the picture, 0 to 255.
+            threshold: least score, 0 to 1.
+            most: boxes at most.
         """
         return self._best(rgb, threshold, most, ALIKE_IOU)
 

@@ -51,6 +51,11 @@ def plausible_shapes(
 
     Objects that are not painted in a colour of the photo keep their shapes' own, which differ. Where nothing tells
     shapes of one form (`alike`), all shapes are taken for different.
+
+    Args:
+        members: The objects of the set.
+        alike: Tells shapes of one form; None takes all shapes for different.
+        chosen_id: What comes first; the first member's shape by default.
     """
     chosen_id = members[0].shape_id if chosen_id is None else chosen_id
     totals: dict[str, float] = {}

@@ -38,7 +38,13 @@ class InnerEdges:
     def of(
         cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed, settings: PoseEvidenceSettings = SETTINGS.evidence
     ) -> InnerEdges:
-        """The edges of an object in the photo."""
+        """The edges of an object in the photo.
+
+        Args:
+            rgb: the photo, sRGB, eight bits.
+            seen: the object's cells, and its mask's share in each.
+            settings: of the evidence.
+        """
         cells = seen.window.cells
         grey = seen.window.means(rgb) @ np.array([0.299, 0.587, 0.114])
         whole = (seen.covered * seen.weight > settings.whole_cell).reshape(cells, cells).astype(np.uint8)
@@ -114,7 +120,13 @@ class Details:
     def of(
         cls, rgb: UInt8[np.ndarray, "h w 3"], seen: Observed, settings: PoseEvidenceSettings = SETTINGS.evidence
     ) -> Details:
-        """What the photo shows of an object."""
+        """What the photo shows of an object.
+
+        Args:
+            rgb: the photo, sRGB, eight bits.
+            seen: the object's cells, and its mask's share in each.
+            settings: of the evidence.
+        """
         return cls(
             InnerEdges.of(rgb, seen, settings),
             seen.covered * seen.weight,
@@ -123,7 +135,12 @@ class Details:
         )
 
     def log_likelihood(self, appearance: ShapeAppearance, hits: ShapeHits) -> float:
-        """How well one posed shape agrees, up to a constant of the object: higher is better."""
+        """How well one posed shape agrees, up to a constant of the object: higher is better.
+
+        Args:
+            appearance: The shape.
+            hits: What the rays of the object's window meet of it, in one pose.
+        """
         edges = float(self.edges.agreement(hits)[0])
         return self.settings.of_edges * edges + self.settings.of_parts * self.share_between_parts(appearance, hits)
 

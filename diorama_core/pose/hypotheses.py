@@ -33,7 +33,13 @@ class Anchor:
     def place_centres(
         self, centres: Float[np.ndarray, "p 3"], R: Float[np.ndarray, "p 3 3"], sizes_m: Float[np.ndarray, "p 3"]
     ) -> Float[np.ndarray, "p 3"]:
-        """The centres moved along the axis so that boxes of these sizes touch the anchored face."""
+        """The centres moved along the axis so that boxes of these sizes touch the anchored face.
+
+        Args:
+            centres: (p, 3) in the world (m).
+            R: (p, 3, 3), from the object frame to the world.
+            sizes_m: (p, 3), along the object's axes.
+        """
         half = 0.5 * (np.abs(np.einsum("pij,i->pj", R, self.axis_world)) * sizes_m).sum(axis=1)
         height = (centres - self.point_world) @ self.axis_world
         return centres + (half - height)[:, None] * self.axis_world

@@ -153,6 +153,11 @@ class Evidence:
         Shapes are made in metres: the very one fits without being enlarged or stretched much. Where the library has
         none of that size, how much exactly one that is like it was changed says little: the tails are those of a Cauchy
         distribution.
+
+        Args:
+            error: share of the silhouette that disagrees with the mask.
+            scale: of the shape, an axis each.
+            limits: of the shape's scale.
         """
         logs = np.log(scale[~limits.thin]) if not limits.thin.all() else np.log(scale)
         deviations = np.array(

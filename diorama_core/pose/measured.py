@@ -97,6 +97,11 @@ class MeasuredObject:
         """What speaks against poses away from the measured box, the more the worse they agree with the picture.
 
         A shape that fits badly wherever it is put does not tell where its thing is; then the box does.
+
+        Args:
+            poses: of the shape.
+            limits: its size.
+            errors: 0 to 1 (`Evidence.errors`).
         """
         iou = _upright_iou(poses, limits.shape_size_m, self.cuboid, self.settings)
         return self.settings.elsewhere * self.cuboid.confidence * errors**2 * (1.0 - iou)
@@ -124,6 +129,11 @@ class MeasuredObject:
         """A pose turned by quarters in its place, each turn that the symmetry tells apart, at an even scale.
 
         Axes along which the shape is thin keep their scale.
+
+        Args:
+            best: one pose.
+            symmetry: number of turns about the up axis that leave the shape as it is.
+            limits: which axes keep their scale, because the shape is thin along them.
         """
         turns = np.arange(1, max(4 // symmetry, 1)) * np.pi / 2
         R = np.array([best.R[0] @ yaw_rotation(angle) for angle in turns]).reshape(-1, 3, 3)

@@ -83,6 +83,10 @@ class ParameterFit:
         """The changed parameters that agree best, and where they do, with scales of the retrieved shape.
 
         None where that is rather stretched than built.
+
+        Args:
+            best: The retrieved shape.
+            poses: Where it stands for every object.
         """
         size_m = np.asarray(best.shape_size_m)
         if not self._may_be_built(best.shape_id):

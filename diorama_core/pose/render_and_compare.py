@@ -253,7 +253,13 @@ class RenderAndCompare:
         return both, errors, scores
 
     def refine_best(self, task: PosingTask, tried: TriedShape, count: int) -> TriedShape:
-        """A tried shape with its best unlike poses refined beside the others, which are worth a little less then."""
+        """A tried shape with its best unlike poses refined beside the others, which are worth a little less then.
+
+        Args:
+            task: of the object.
+            tried: the shape with its poses and their scores.
+            count: of poses to refine.
+        """
         fold, size_m = tried.shape.symmetry, tried.limits.shape_size_m
         start = tried.hypotheses[
             unlike_best(tried.hypotheses.poses, tried.scores, fold, size_m, count, self.settings.search)

@@ -47,7 +47,13 @@ class SunLight:
     """Everything that holds it off, walls and ceiling with their openings too."""
 
     def falling(self, points: Vectors, normals: Vectors, sample: Float32[np.ndarray, "n 2"]) -> Vectors:
-        """Irradiance of places; see `DirectLight`."""
+        """Irradiance of places; see `DirectLight`.
+
+        Args:
+            points: world, metres.
+            normals: unit, toward the light's side.
+            sample: 0 to 1, chooses the point of the source.
+        """
         across = unit(np.cross(self.direction, [0.3, 0.5, 0.81]))
         disc = SUN_BLUR * (2 * sample - 1) @ np.stack([across, np.cross(self.direction, across)]).astype(np.float32)
         toward = (self.direction.astype(np.float32) + disc).astype(np.float32)
@@ -68,7 +74,13 @@ class LampLight:
     """Everything that holds it off, but for the lamp itself: its shade lets light through."""
 
     def falling(self, points: Vectors, normals: Vectors, sample: Float32[np.ndarray, "n 2"]) -> Vectors:
-        """Irradiance of places; see `DirectLight`."""
+        """Irradiance of places; see `DirectLight`.
+
+        Args:
+            points: world, metres.
+            normals: unit, toward the light's side.
+            sample: 0 to 1, chooses the point of the source.
+        """
         up, around = 2 * sample[:, :1] - 1, 2 * np.pi * sample[:, 1:]
         level = np.sqrt(1 - up * up)
         ball = np.concatenate([level * np.cos(around), level * np.sin(around), up], axis=1)

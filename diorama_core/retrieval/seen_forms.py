@@ -55,6 +55,11 @@ def form_likelihood_factor(
     """What a shape's score is multiplied by: above 1 for forms that are likelier than what was to be expected.
 
     Attributes that the shape does not have say nothing; `seen_form` is as `SeenKinds.form`, the factor 1 without any.
+
+    Args:
+        form: of the shape; attributes that it does not have say nothing.
+        seen_form: probability of every value of every attribute (`SeenKinds.form`); without any, the factor is 1.
+        settings: numbers to work with.
     """
     if not len(seen_form):
         return 1.0

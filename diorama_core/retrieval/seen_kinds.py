@@ -52,7 +52,13 @@ def as_it_looks(shares: Mapping[str, float], looks_like: Sequence[tuple[str, flo
 def as_measured(
     shares: Mapping[str, float], size_m: Float[np.ndarray, "3"], settings: MeasuredSizeSettings = SETTINGS.sizes
 ) -> dict[str, float]:
-    """How likely each kind is once the thing was measured, but for a common factor."""
+    """How likely each kind is once the thing was measured, but for a common factor.
+
+    Args:
+        shares: how likely each kind is before.
+        size_m: depth, width and height of its cuboid, metres.
+        settings: numbers to work with.
+    """
     size_m = np.maximum(size_m, settings.min_m)
     usual = {kind: size_density(kind, size_m, settings.sigma) for kind in shares}
     best = max(usual.values())

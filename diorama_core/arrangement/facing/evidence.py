@@ -80,7 +80,13 @@ class FacingRoom(ArrayValue):
         return float(np.linalg.norm(np.clip(np.maximum(low_i, low_j) - np.minimum(high_i, high_j), 0.0, None)))
 
     def nearest(self, i: int, kinds: frozenset[str], reach_m: float) -> int | None:
-        """The nearest other object of some kinds within reach of an object."""
+        """The nearest other object of some kinds within reach of an object.
+
+        Args:
+            i: index of the object.
+            kinds: categories that count.
+            reach_m: largest gap between the two, in the plan (m).
+        """
         candidates = [
             (self.gap_m(i, j), float(np.linalg.norm(o.centre - self.objects[i].centre)), j)
             for j, o in enumerate(self.objects)

@@ -66,7 +66,12 @@ _TURNS, _LEVELS = 24, 12
 
 
 def main_light(light: Lighting, points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "3"]:
-    """What a light is at some places on average, in the terms of `RoomLight`: direction times strength."""
+    """What a light is at some places on average, in the terms of `RoomLight`: direction times strength.
+
+    Args:
+        light: Any.
+        points: In the world.
+    """
     height = (np.arange(_LEVELS) + 0.5) / _LEVELS * 2 - 1
     turn = (np.arange(_TURNS) + 0.5) / _TURNS * 2 * np.pi
     h, t = (grid.ravel() for grid in np.meshgrid(height, turn))

@@ -244,6 +244,10 @@ def fit_sizes(program: Program, outline_cost: Float[np.ndarray, " n"]) -> Struct
 
     Objects that hold up others keep their sizes. `outline_cost` is what a metre of outline counts, by object, in the
     unit of `Program.cost`.
+
+    Args:
+        program: the moves that are possible, and what they cost.
+        outline_cost: what a metre of outline counts, by object, in the unit of `Program.cost`.
     """
     problem = program.problem
     factors = np.ones((problem.count, 3))

@@ -70,7 +70,13 @@ class Volumes:
     def world_volumes(
         self, R: Float[np.ndarray, "n 3 3"], p: Float[np.ndarray, "n 3"], scale: Float[np.ndarray, "n 3"]
     ) -> WorldVolumes:
-        """The volumes when objects are at these poses."""
+        """The volumes when objects are at these poses.
+
+        Args:
+            R: rotations, world from object.
+            p: centres, world, metres.
+            scale: along the axes of each object.
+        """
         on_object = self.supporter >= 0
         owner_R = np.where(on_object[:, None, None], R[self.supporter], np.eye(3))
         owner_p = np.where(on_object[:, None], p[self.supporter], 0.0)
@@ -111,6 +117,11 @@ def may_meet(
     """Which pairs of parts must not overlap: those of unrelated objects, and what encloses a place with what is there.
 
     `surface` has the place of every object, in the world; None without one.
+
+    Args:
+        problem: who holds up whom.
+        bodies: every part, posed.
+        surface: the place of every object, in the world; None without one.
     """
     owner = bodies.owner
     allowed = ~problem.kin[owner[:, None], owner[None]]

@@ -82,7 +82,13 @@ def supports_of_boxes(
 def rim_occlusion(
     mask: Bool[np.ndarray, "h w"], depth_m: Float[np.ndarray, "h w"], settings: MeasuredSettings = SETTINGS
 ) -> float:
-    """Share of an object's lower rim that something nearer, or the picture's border, hides."""
+    """Share of an object's lower rim that something nearer, or the picture's border, hides.
+
+    Args:
+        mask: of the object.
+        depth_m: z in camera in metres; 0 where missing.
+        settings: how much nearer it must be.
+    """
     columns = np.flatnonzero(mask.any(axis=0))
     if not len(columns):
         return 1.0

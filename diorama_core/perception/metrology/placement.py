@@ -95,6 +95,11 @@ def place_all(observations: BoxObservations, view: View, height_m: float) -> tup
     """Place every object: first on the floor, then on others, on walls and below the ceiling, the cheapest way each.
 
     Shelves that hang on walls come before the things that may lie on them.
+
+    Args:
+        observations: of all objects.
+        view: intrinsics, and rotation from camera to world.
+        height_m: of the camera above the floor.
     """
     search = _Search(observations, view, height_m)
     floor = search.not_through_tops(search.place_on_floor())
@@ -334,7 +339,13 @@ def set_sizes(placed: Mapping[int, Placement], observations: BoxObservations) ->
 
 
 def readings_of(solved: Solutions, observations: BoxObservations, view: View) -> dict[int, Readings]:
-    """Distinct readings of every object in a batch of several an object, masks counted in."""
+    """Distinct readings of every object in a batch of several an object, masks counted in.
+
+    Args:
+        solved: cuboids and their costs, several an object.
+        observations: of all objects.
+        view: intrinsics, and rotation from camera to world.
+    """
     settings, problems = observations.settings, solved.problems
     boxes = cuboids(solved.unknowns, problems, view)
     names = tuple(c.name for c in observations.categories)

@@ -69,7 +69,12 @@ CERTAIN = 6.0
 
 
 def is_upside_down(boxes: Sequence[LabelledBox], height: int) -> bool:
-    """Whether things lie as in a picture that was turned by 180 degrees; boxes without names say nothing."""
+    """Whether things lie as in a picture that was turned by 180 degrees; boxes without names say nothing.
+
+    Args:
+        boxes: with names; those without say nothing.
+        height: of the photo, pixels.
+    """
     ratio = 0.0
     for box in boxes:
         if box.category == UNKNOWN.name:

@@ -70,7 +70,12 @@ class DepthUnit:
 
 
 def unit_of(evidence: ScaleEvidence | None, stated: float) -> DepthUnit:
-    """The unit of a map whose container states so many units per metre; `evidence` is None where nothing is seen."""
+    """The unit of a map whose container states so many units per metre; `evidence` is None where nothing is seen.
+
+    Args:
+        evidence: how many metres a unit is, by the picture; None where it says nothing.
+        stated: units per metre that the container has.
+    """
     if evidence is None or (evidence.things < MIN_THINGS and not evidence.heights_agree):
         return DepthUnit(stated, _doubtful_height(evidence, stated))
     seen = -evidence.log_scale
@@ -191,6 +196,11 @@ def size_scatter(depth: Float[np.ndarray, "h w"], focal: float, boxes: Sequence[
     """The median deviation of the logarithms of things' sizes from their median; 0 for fewer than three things.
 
     Lengths are as `scale_evidence` has them.
+
+    Args:
+        depth: z in camera, in the map's unit.
+        focal: focal length in shares of the picture's longer side.
+        boxes: of named things, in shares of the longer side.
     """
     logs = np.array([v for box in boxes for v in _log_scales(depth, focal, box)])
     return float(np.median(np.abs(logs - np.median(logs)))) if len(logs) >= 6 else 0.0
