@@ -17,6 +17,7 @@ def asset(*parts: str) -> Path:
 FOLDER = asset("models")
 DETECTOR, NAMER, CARD = "room-detector.onnx", "room-namer.onnx", "recogniser.json"
 OUTLINER = "room-outliner.onnx"
+SURFACES = "room-surfaces.onnx"
 CLASS_TABLE, KIND_LAYER = "kinds-in-imagenet.txt", "kinds-in-photos.npz"
 
 

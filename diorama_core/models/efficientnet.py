@@ -27,6 +27,9 @@ _GRAPH_VERSION = 1
 """Raised when the graph that `_graph` makes changes."""
 _STRIDED = (1, 3, 5, 11)
 """Blocks that halve the picture."""
+_MAPS = {"stride_4": 2, "stride_8": 4, "stride_16": 10, "stride_32": 15}
+"""The last block before the picture is halved again, by the name of its map."""
+MAP_CHANNELS = {"stride_4": 24, "stride_8": 40, "stride_16": 112, "stride_32": 320}
 _EPSILON = 1e-3
 """Epsilon of batch normalisation, as the network was trained."""
 _OPSET, _IR = 17, 8
@@ -45,6 +48,21 @@ def lite0_graph() -> Path:
     weights = _weights()
     name = f"efficientnet-lite0-{_WEIGHTS_SHA256[:12]}-{_GRAPH_VERSION}"
     return derive_graph(name, lambda: _graph(_read(weights)))
+
+
+@cache
+def lite0_maps() -> Path:
+    """The file of a graph of what the network sees place by place, in the cache folder; the first call makes it.
+
+    Input `pictures` [1, 3, h, w], normalised likewise, of sizes that 32 divides; outputs are the maps of
+    `MAP_CHANNELS`, each in the stride that its name says.
+
+    Raises:
+        UnavailableError: as for `lite0_graph`.
+    """
+    weights = _weights()
+    name = f"efficientnet-lite0-maps-{_WEIGHTS_SHA256[:12]}-{_GRAPH_VERSION}"
+    return derive_graph(name, lambda: _maps_graph(_read(weights)))
 
 
 def _weights() -> Path:
@@ -123,22 +141,46 @@ class _GraphWriter:
         same = before is not None and len(before) == len(self._weights[f"{at}_project_conv.weight"])
         return self.add("Add", [x, y], f"{at}sum") if same and stride == 1 else y
 
+    def blocks(self, x: str) -> list[str]:
+        """The stem and all blocks after it; the output of each block."""
+        outputs: list[str] = []
+        x = self.convolution(x, ("_conv_stem", "_bn0"), 2)
+        while f"_blocks.{len(outputs)}._project_conv.weight" in self._weights:
+            x = self.block(x, len(outputs))
+            outputs.append(x)
+        return outputs
+
 
 def _graph(weights: Mapping[str, Float[np.ndarray, "..."]]) -> bytes:
-    from onnx import TensorProto, checker, helper
+    from onnx import TensorProto, helper
 
     made = _GraphWriter(weights)
-    x = made.convolution("crops", ("_conv_stem", "_bn0"), 2)
-    k = 0
-    while f"_blocks.{k}._project_conv.weight" in weights:
-        x, k = made.block(x, k), k + 1
-    x = made.convolution(x, ("_conv_head", "_bn1"))
+    x = made.convolution(made.blocks("crops")[-1], ("_conv_head", "_bn1"))
     made.add("Flatten", [made.add("GlobalAveragePool", [x], "pooled")], "features")
     layer = [made.constant("fc.w", weights["_fc.weight"]), made.constant("fc.b", weights["_fc.bias"])]
     made.add("Gemm", ["features", *layer], "logits", transB=1)
     value = helper.make_tensor_value_info
     inputs = [value("crops", TensorProto.FLOAT, ["n", 3, SIDE_PX, SIDE_PX])]
     outputs = [value(name, TensorProto.FLOAT, ["n", n]) for name, n in (("features", FEATURES), ("logits", CLASSES))]
+    return _model(made, inputs, outputs)
+
+
+def _maps_graph(weights: Mapping[str, Float[np.ndarray, "..."]]) -> bytes:
+    from onnx import TensorProto, helper
+
+    made = _GraphWriter(weights)
+    outputs = made.blocks("pictures")
+    for name, block in _MAPS.items():
+        made.add("Identity", [outputs[block]], name)
+    value = helper.make_tensor_value_info
+    inputs = [value("pictures", TensorProto.FLOAT, [1, 3, "h", "w"])]
+    maps = [value(name, TensorProto.FLOAT, [1, channels, None, None]) for name, channels in MAP_CHANNELS.items()]
+    return _model(made, inputs, maps)
+
+
+def _model(made: _GraphWriter, inputs: list[object], outputs: list[object]) -> bytes:
+    from onnx import checker, helper
+
     graph = helper.make_graph(made.nodes, "efficientnet-lite0", inputs, outputs, made.constants)
     model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", _OPSET)], ir_version=_IR)
     checker.check_model(model)

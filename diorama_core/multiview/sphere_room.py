@@ -1,11 +1,12 @@
-"""The room around a 360 degree photo, from its borders with ceiling and floor all the way round.
+"""The room around a 360 degree photo, from its floor and ceiling and their borders all the way round.
 
 Seen from the camera, the room is at each azimuth one upright wall along an axis of the room: a wall at distance r is
 seen up to the elevation atan(h cos(a) / r), a being the azimuth from its nearest point, and down to -atan(cos(a) / r);
-the camera's height above the floor is 1, the ceiling is h above the camera. The sequence of walls that explains the
-picture's edges best is found by dynamic programming over azimuths and all heights of the ceiling at once (Flint et al.
-2010, "A dynamic programming approach to reconstructing building interiors"): a wall goes on, meets the next one in a
-corner, or ends before a farther one. It is closed by going round twice. Distances are then refined together.
+the camera's height above the floor is 1, the ceiling is h above the camera. The sequence of walls that explains best
+which parts of the picture are floor and ceiling (`models.room_surfaces`), and its edges, is found by dynamic
+programming over azimuths and all heights of the ceiling at once (Flint et al. 2010, "A dynamic programming approach to
+reconstructing building interiors"): a wall goes on, meets the next one in a corner, or ends before a farther one. It
+is closed by going round twice. Distances are then refined together.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from itertools import product
 import cv2
 import numpy as np
 from jaxtyping import Bool, Float, Float32, Int, UInt8
-from scipy.ndimage import uniform_filter1d
+from scipy.special import logit
 
 QUARTER = np.pi / 2
 
@@ -45,21 +46,20 @@ class SphereRoomSettings:
     coarse_px: float = 2.5
     """Deviations of blurs at 1024 pixels around: against noise; of what is taken out as shade, which grows softly
     into corners; and of the edges in the search, for a step of it."""
-    band: int = 6
-    along_deg: float = 40.0
-    """Steps on either side of a border, and azimuth along it, whose colours are compared: tiles and boards have lines
-    along walls, too, but the same colours beyond (Martin et al. 2004, on natural image boundaries)."""
-    colour_step: float = 8.0
-    """Step of the histograms of lightness and the chromatic axes, in CIELAB: some just noticeable differences."""
-    alike_ceiling: float = 0.5
-    """Weight of an edge between like colours at the ceiling, which is often as white as the walls; on the floor it
-    is a line of the floor."""
+    surface_weight: float = 0.1
+    clearest_odds: float = 4.0
+    most_wrong: float = 1.0
+    """Gain of a degree of elevation where floor or ceiling is e times likelier than wall, in degrees of a perfect edge;
+    logarithms of odds are clipped; and the cost of a border where the picture speaks wholly against it: a roof's
+    slope is none of this model's ceilings, and the floor still tells where its wall is."""
+    edge_weight: float = 0.5
+    """Of edges beside that."""
     margin_rad: float = float(np.deg2rad(2.0))
     """Around what was marked: boxes are drawn, and the search looks, to about a degree."""
     before_cost: float = 1.0
     """Of a wall before what stands in the room, for each degree: as much as a perfect edge gains."""
-    corner_cost: float = 8.0
-    jump_cost: float = 24.0
+    corner_cost: float = 4.0
+    jump_cost: float = 12.0
     """Gain that a corner, and a wall that ends before a farther one (three corners), must gain: degrees of a perfect
     edge."""
     away: tuple[float, float] = (1.5, 0.6)
@@ -182,37 +182,6 @@ class _Edges:
         at = (x.reshape(flat).astype(np.float32), y.reshape(flat).astype(np.float32))
         return cv2.remap(of, *at, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE).reshape(*azimuth.shape, 3)
 
-    def contrast(
-        self, azimuth: Float[np.ndarray, "n"], axis: int, reach: Float[np.ndarray, "r"]
-    ) -> Float32[np.ndarray, "n r"]:
-        """Difference of colours beyond a wall's border and before it, 0 to 1, along some of the border.
-
-        Args:
-            azimuth: where; the whole round.
-            axis: of the wall.
-            reach: as for `border`, in equal steps of logarithms.
-        """
-        off = np.angle(np.exp(1j * (azimuth - axis * QUARTER)))
-        elevation = np.arctan(np.maximum(np.cos(off), 0.02)[:, None] / reach)
-        colour = self._sample(self.lab, np.broadcast_to(azimuth[:, None], elevation.shape), elevation, -0.5)
-        facing = (np.abs(off) < SETTINGS.widest_rad).astype(np.float32)[:, None]
-        size = round(SETTINGS.along_deg * len(azimuth) / 360)
-        weight = np.maximum(uniform_filter1d(facing, size, axis=0, mode="wrap"), 1e-3)
-        at, most = np.arange(len(reach)), len(reach) - 1
-        low, high = np.maximum(at - SETTINGS.band, 0), np.minimum(at + 1 + SETTINGS.band, most + 1)
-        differ = np.zeros(elevation.shape)
-        for channel, (least, greatest) in enumerate(((0.0, 100.0), (-40.0, 40.0), (-40.0, 40.0))):
-            bins = np.arange(least, greatest + 1e-6, SETTINGS.colour_step)
-            place = np.clip(colour[..., channel], least, greatest)[..., None]
-            soft = np.maximum(0.0, 1.0 - np.abs(place - bins) / SETTINGS.colour_step) * facing[..., None]
-            soft = uniform_filter1d(soft, size, axis=0, mode="wrap") / weight[..., None]
-            total = np.cumsum(np.concatenate([np.zeros_like(soft[:, :1]), soft], axis=1), axis=1)
-            beyond = (total[:, high] - total[:, np.minimum(at + 1, most)]) / np.maximum(high - at - 1, 1)[:, None]
-            near = (total[:, at] - total[:, low]) / np.maximum(at - low, 1)[:, None]
-            differ += 0.5 * np.abs(beyond - near).sum(axis=-1)
-        differ[:, : SETTINGS.band] = differ[:, -SETTINGS.band :] = 0.0
-        return np.minimum(differ, 1.0).astype(np.float32)
-
     def border(
         self, azimuth: Float[np.ndarray, "..."], axis: int | Int[np.ndarray, "..."], reach: Float[np.ndarray, "..."]
     ) -> Float32[np.ndarray, "..."]:
@@ -258,20 +227,59 @@ class _Edges:
         return before
 
 
-def room_on_sphere(level: UInt8[np.ndarray, "h w 3"], things: Sequence[SphereThing] = ()) -> SphereRoom:
-    """The room that the edges of a picture speak for.
+class _Surfaces:
+    """Where a level picture shows floor and ceiling, added up from the nadir and from the zenith."""
+
+    def __init__(self, shares: Float32[np.ndarray, "3 h w"]) -> None:
+        height = shares.shape[1]
+        odds = logit(np.clip(shares[[0, 2]], 1e-6, 1 - 1e-6)).clip(-SETTINGS.clearest_odds, SETTINGS.clearest_odds)
+        odds *= SETTINGS.surface_weight * 180.0 / height
+        start = np.zeros((1, shares.shape[2]))
+        below = np.concatenate([start, np.cumsum(odds[0, ::-1], axis=0)])[::-1]
+        above = np.concatenate([start, np.cumsum(odds[1], axis=0)])
+        self._gains = tuple(np.ascontiguousarray(g - g.max(axis=0), np.float32) for g in (below, above))
+
+    def gain(
+        self, azimuth: Float[np.ndarray, "n 1"], axis: int, reach: Float[np.ndarray, "1 r"]
+    ) -> Float32[np.ndarray, "n r"]:
+        """Gain of borders over the likeliest ones, at most 0.
+
+        Args:
+            azimuth: where.
+            axis: of the wall.
+            reach: its distance over the height of the plane above the camera; negative below.
+        """
+        table = self._gains[int(reach[0, 0] > 0)]
+        elevation = np.arctan(np.maximum(np.cos(azimuth - axis * QUARTER), 0.02) / reach)
+        height, width = len(table) - 1, table.shape[1]
+        x = np.broadcast_to(np.mod(0.25 - azimuth / (2 * np.pi), 1.0) * width - 0.5, elevation.shape)
+        y = (0.5 - elevation / np.pi) * height
+        at = (x.astype(np.float32), y.astype(np.float32))
+        gain = cv2.remap(table, *at, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+        return np.asarray(np.maximum(gain, -SETTINGS.most_wrong), np.float32)
+
+
+def room_on_sphere(
+    level: UInt8[np.ndarray, "h w 3"],
+    things: Sequence[SphereThing] = (),
+    shares: Float32[np.ndarray, "3 h2 w2"] | None = None,
+) -> SphereRoom:
+    """The room that surfaces and edges of a picture speak for.
 
     Args:
         level: equirectangular, +Z up, the room's axes along x and y (`geometry.sphere`).
         things: what is in the room: its edges are not the room's, and no wall is before it.
+        shares: probabilities of floor, wall and ceiling all round (`sphere_views.sphere_surfaces`); without them edges
+            alone decide.
     """
-    walls, log_height = _search_walls(_Edges(level, SETTINGS, things, SETTINGS.coarse_px))
+    surfaces = None if shares is None else _Surfaces(shares)
+    walls, log_height = _search_walls(_Edges(level, SETTINGS, things, SETTINGS.coarse_px), surfaces)
     fine = _Edges(level, SETTINGS, things)
     walls, log_height = _refine_walls(fine, walls, log_height)
     return _outline_room(fine, walls, log_height)
 
 
-def _search_walls(edges: _Edges) -> tuple[tuple[_Wall, ...], float]:
+def _search_walls(edges: _Edges, surfaces: _Surfaces | None) -> tuple[tuple[_Wall, ...], float]:
     """The best closed sequence of walls, and the logarithm of the ceiling's height above the camera."""
     step, n = SETTINGS.log_step, SETTINGS.columns
     distances = np.arange(np.log(SETTINGS.nearest), np.log(SETTINGS.farthest), step)
@@ -281,11 +289,13 @@ def _search_walls(edges: _Edges) -> tuple[tuple[_Wall, ...], float]:
     wider = distances[0] + step * np.arange(low, count - int(heights.min()))
     evidence = np.zeros((n, len(heights), 4, count), np.float32)
     for axis in range(4):
-        floor, ceiling = (
-            edges.border(azimuth[:, None], axis, reach[None])
-            * (alike + (1.0 - alike) * edges.contrast(azimuth, axis, reach))
-            for reach, alike in ((-np.exp(distances), 0.0), (np.exp(wider), SETTINGS.alike_ceiling))
-        )
+        reaches = (-np.exp(distances)[None], np.exp(wider)[None])
+        floor, ceiling = (SETTINGS.edge_weight * edges.border(azimuth[:, None], axis, reach) for reach in reaches)
+        if surfaces is not None:
+            floor, ceiling = (
+                e + surfaces.gain(azimuth[:, None], axis, reach)
+                for e, reach in zip((floor, ceiling), reaches, strict=True)
+            )
         away = np.abs(np.angle(np.exp(1j * (azimuth - axis * QUARTER)))) > SETTINGS.widest_rad
         for at, m in enumerate(heights):
             shifted = ceiling[:, -m - low : -m - low + count]

@@ -23,6 +23,7 @@ from diorama_core.geometry.segments import line_segments_px
 from diorama_core.geometry.sphere import directions, level_axes, perspective, sample
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.taxonomy import category, is_furniture
+from diorama_core.models.room_surfaces import own_surface_reader
 from diorama_core.multiview.joining import RoomPhoto, Track
 from diorama_core.multiview.joint_room import SeenRoom
 from diorama_core.multiview.rooms import (
@@ -45,6 +46,7 @@ from diorama_core.multiview.sphere_views import (
     merge_detections,
     picture_boxes,
     project_to_views,
+    sphere_surfaces,
     sphere_views,
     to_sphere_boxes,
     view_photo,
@@ -142,7 +144,9 @@ def build_sphere(
     if not boxes:
         things = _detect_objects(pictures, choose, progress.part(0.03, 0.12))
     progress.report(0.12, "looking for the room's borders all round")
-    border = room_on_sphere(sample(photo.rgb, directions(LEVEL_WIDTH_PX) @ R), occluders(things))
+    level, reader = sample(photo.rgb, directions(LEVEL_WIDTH_PX) @ R), own_surface_reader()
+    surfaces = None if reader is None else sphere_surfaces(level, reader)
+    border = room_on_sphere(level, occluders(things), surfaces)
     read, sightings, height_m = _read(pictures, things, border, choose, progress.part(0.15, 0.3), camera_height_m)
     room_photos = [estimate_room_photo(r) for r in read]
     shown = [(thing, seen) for thing, seen in zip(things, sightings, strict=True) if seen]

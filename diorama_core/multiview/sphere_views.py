@@ -8,14 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
+import cv2
 import numpy as np
-from jaxtyping import Float, UInt8
+from jaxtyping import Float, Float32, UInt8
+from scipy.special import softmax
 
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.geometry.projection import box_iou
-from diorama_core.geometry.sphere import directions_at, level_axes, perspective, sphere_pixels
+from diorama_core.geometry.sphere import directions, directions_at, level_axes, perspective, sphere_pixels
 from diorama_core.library.taxonomy import broad
+from diorama_core.models.room_surfaces import CELL_PX, SIDE_PX, SurfaceReader
 from diorama_core.multiview.rooms import PosedInputs
 from diorama_core.scene.types import Camera, Intrinsics, rigid
 
@@ -41,6 +45,11 @@ class SphereViewsSettings:
     """Boxes that end so near the picture's sides, as a share of its width, may go on beyond the seam."""
     min_px: float = 2.0
     """Smallest side of a box."""
+    surface_fov_rad: float = 1.35
+    surface_elevations_rad: tuple[float, ...] = (-0.6, 0.0, 0.6)
+    surfaces_width_px: int = 512
+    """Views in which floor, wall and ceiling are told: as wide as pictures that the head learnt from, as high and low
+    as it learnt; and the width of the map of all of them."""
     widest_deg: float = 160.0
     """Widest half angle of an object: a wider one is below the camera or behind it, and no view shows it."""
 
@@ -198,6 +207,33 @@ def view_photo(
     k = view.intrinsics
     picture = perspective(rgb, R_room_sphere.T @ level_axes(view.azimuth), k)
     return Photo(picture, name, (k.width, k.height))
+
+
+def sphere_surfaces(level: UInt8[np.ndarray, "h w 3"], reader: SurfaceReader) -> Float32[np.ndarray, "3 h2 w2"]:
+    """Probabilities of floor, wall and ceiling all round, from views that overlap by half; even odds where none looks.
+
+    Args:
+        level: equirectangular, +Z up.
+        reader: tells the surfaces of a view.
+    """
+    towards = directions(SETTINGS.surfaces_width_px)
+    total, weights = np.zeros((*towards.shape[:2], 3)), np.zeros(towards.shape[:2])
+    k = Intrinsics.from_fov(SIDE_PX, SIDE_PX * 3 // 4, SETTINGS.surface_fov_rad)
+    for azimuth, elevation in product(np.arange(8) * np.pi / 4, SETTINGS.surface_elevations_rad):
+        axes = level_axes(float(azimuth), elevation)
+        shares = reader.read(perspective(level, axes, k), Camera(k, rigid(axes, np.zeros(3)))).shares
+        local = towards @ axes
+        z = np.where(local[..., 2] > 0.05, local[..., 2], np.inf)
+        at = np.stack([k.fx * local[..., 0] / z + k.cx, k.fy * local[..., 1] / z + k.cy], axis=-1)
+        # What is near a view's border is seen better by the next one.
+        inside = np.minimum(at, (k.width, k.height) - at).min(axis=-1) / k.height * np.isfinite(z)
+        weight = np.maximum(inside, 0.0)
+        cells = (at / CELL_PX - 0.5).astype(np.float32)
+        seen = cv2.remap(np.moveaxis(shares, 0, -1), cells, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+        total += weight[..., None] * np.log(np.maximum(seen, 1e-6))
+        weights += weight
+    mean = total / np.maximum(weights, 1e-9)[..., None]
+    return np.moveaxis(softmax(mean, axis=-1), -1, 0).astype(np.float32)
 
 
 def merge_detections(boxes_by_view: Sequence[tuple[SphereView, Sequence[LabelledBox]]]) -> tuple[SphereBox, ...]:

@@ -14,31 +14,42 @@ import torch
 from diorama_core.arrangement.facing.terms import PATH as WEIGHTS
 from diorama_core.errors import DioramaError, InputError, UnavailableError
 from diorama_core.evaluation.benchmarks.photos import PhotoSource, plan
-from diorama_core.io.assets import CARD, DETECTOR, FOLDER, NAMER, OUTLINER
+from diorama_core.io.assets import CARD, DETECTOR, FOLDER, NAMER, OUTLINER, SURFACES
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.models.recogniser import Recogniser
 from diorama_core.progress import Progress
 from diorama_core.training.adapting import adapt_detector, read_photos
-from diorama_core.training.export import export_detector, export_namer, export_outliner, join_namers, score, write_card
+from diorama_core.training.export import (
+    export_detector,
+    export_namer,
+    export_outliner,
+    export_surfaces,
+    join_namers,
+    score,
+    write_card,
+)
 from diorama_core.training.facings import FacingModel, as_settings, beginning, certificate, gather
 from diorama_core.training.kind_evidence import train as train_evidence
 from diorama_core.training.picture_files import PictureFiles
 from diorama_core.training.pictures import category_names, make_pictures
 from diorama_core.training.shape_views import ShapeViewFiles, make_shape_views
+from diorama_core.training.surfaces import SurfaceFiles, make_surfaces
 from diorama_core.training.train import (
     Schedule,
     Trainer,
     detector_trainer,
     namer_trainer,
     outliner_trainer,
+    surface_trainer,
 )
 from diorama_core.training.windows import WindowFiles, make_windows
 
-NETWORKS = ("detector", "namer", "outliner")
+NETWORKS = ("detector", "namer", "outliner", "surfaces")
 DETECTOR_SCHEDULE = Schedule(steps=12000, batch=24)
 NAMER_SCHEDULE = Schedule(steps=8000, batch=128)
 OUTLINER_SCHEDULE = Schedule(steps=20000, batch=64)
+SURFACE_SCHEDULE = Schedule(steps=1000, batch=8)
 
 
 def main() -> int:
@@ -62,16 +73,16 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_rendering(steps: Any) -> None:
-    pictures = steps.add_parser("pictures", help="render rooms; goes on where it stopped")
-    pictures.set_defaults(run=_pictures)
-    pictures.add_argument("folder", type=Path)
-    pictures.add_argument("--rooms", type=int, default=1000)
-    pictures.add_argument("--first", type=int, default=0, help="seed of the first room")
-    windows = steps.add_parser("windows", help="render rooms for the outliner; goes on where it stopped")
-    windows.set_defaults(run=_windows)
-    windows.add_argument("folder", type=Path)
-    windows.add_argument("--rooms", type=int, default=400)
-    windows.add_argument("--first", type=int, default=500_000, help="seed of the first room")
+    for name, make, rooms, first, words in (
+        ("pictures", make_pictures, 1000, 0, "render rooms"),
+        ("windows", make_windows, 400, 500_000, "render rooms for the outliner"),
+        ("surfaces", make_surfaces, 500, 830_000, "render rooms for the head that tells a room's surfaces"),
+    ):
+        step = steps.add_parser(name, help=f"{words}; goes on where it stopped")
+        step.set_defaults(run=_render, make=make)
+        step.add_argument("folder", type=Path)
+        step.add_argument("--rooms", type=int, default=rooms)
+        step.add_argument("--first", type=int, default=first, help="seed of the first room")
     shapes = steps.add_parser("shapes", help="render single shapes for the namer; goes on where it stopped")
     shapes.set_defaults(run=_shapes)
     shapes.add_argument("folder", type=Path)
@@ -81,7 +92,7 @@ def _add_training(steps: Any) -> None:
     train = steps.add_parser("train", help="train one network; goes on from its checkpoint")
     train.set_defaults(run=_train)
     train.add_argument("network", choices=NETWORKS)
-    train.add_argument("--pictures", type=Path, required=True, help="of the outliner: the folder of windows")
+    train.add_argument("--pictures", type=Path, required=True, help="folder of what is rendered for it")
     train.add_argument("--checkpoints", type=Path, required=True)
     train.add_argument("--steps", type=int)
     train.add_argument("--threads", type=int, default=2)
@@ -89,8 +100,8 @@ def _add_training(steps: Any) -> None:
     train.add_argument("--workers", type=int, default=1, help="processes that prepare batches (default: %(default)s)")
     export = steps.add_parser("export", help="write the trained networks as ONNX graphs")
     export.set_defaults(run=_export)
-    export.add_argument("networks", choices=("recogniser", "outliner"))
-    export.add_argument("--pictures", type=Path, required=True, help="of the outliner: the folder of windows")
+    export.add_argument("networks", choices=("recogniser", "outliner", "surfaces"))
+    export.add_argument("--pictures", type=Path, required=True, help="folder of what is rendered for it")
     export.add_argument("--checkpoints", type=Path, required=True)
     export.add_argument("-o", "--output", type=Path, required=True)
     adapt = steps.add_parser("adapt", help="adapt the shipped detector to annotated photos")
@@ -136,13 +147,8 @@ def _evidence(a: argparse.Namespace) -> None:
         print(f"{way.way:20} first {way.first:.3f}, among five {way.among_five:.3f}, log loss {way.log_loss:.3f}")
 
 
-def _pictures(a: argparse.Namespace) -> None:
-    made = make_pictures(a.folder, built_in_library(), range(a.first, a.first + a.rooms), _progress())
-    print(f"{made} rooms rendered, {a.rooms - made} were there: {a.folder}")
-
-
-def _windows(a: argparse.Namespace) -> None:
-    made = make_windows(a.folder, built_in_library(), range(a.first, a.first + a.rooms), _progress())
+def _render(a: argparse.Namespace) -> None:
+    made = a.make(a.folder, built_in_library(), range(a.first, a.first + a.rooms), _progress())
     print(f"{made} rooms rendered, {a.rooms - made} were there: {a.folder}")
 
 
@@ -169,6 +175,8 @@ def _trainer(
     path = checkpoints / f"{network}.pt"
     if network == "outliner":
         return outliner_trainer(WindowFiles.of(pictures), OUTLINER_SCHEDULE.lasting(steps), path, device, workers)
+    if network == "surfaces":
+        return surface_trainer(SurfaceFiles.read(pictures), SURFACE_SCHEDULE.lasting(steps), path, device, workers)
     files, kinds = PictureFiles.of(pictures), len(category_names(built_in_library()))
     if network == "detector":
         return detector_trainer(files, kinds, DETECTOR_SCHEDULE.lasting(steps), path, device, workers)
@@ -180,6 +188,8 @@ def _export(a: argparse.Namespace) -> None:
     a.output.mkdir(parents=True, exist_ok=True)
     if a.networks == "outliner":
         export_outliner(_trainer("outliner", a.pictures, a.checkpoints, None).averaged, a.output / OUTLINER)
+    elif a.networks == "surfaces":
+        export_surfaces(_trainer("surfaces", a.pictures, a.checkpoints, None).averaged, a.output / SURFACES)
     else:
         _export_recogniser(a)
     print(f"networks written: {a.output}")

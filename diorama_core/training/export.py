@@ -16,6 +16,7 @@ from diorama_core.errors import InputError
 from diorama_core.evaluation.benchmarks.recognition import BEST, RecognitionBench, run
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.form import MEASURED, VALUES
+from diorama_core.models.efficientnet import MAP_CHANNELS
 from diorama_core.models.images import CROP_SIDE
 from diorama_core.models.onnx_export import write_graph
 from diorama_core.models.outliner import SIDE
@@ -54,6 +55,16 @@ def export_outliner(network: nn.Module, path: Path) -> None:
     dynamic = {"windows": {0: "b"}, "logits": {0: "b"}}
     example = (torch.zeros(2, 4, SIDE, SIDE),)
     write_graph(network, example, path, inputs=["windows"], outputs=["logits"], dynamic=dynamic, half_weights=True)
+
+
+def export_surfaces(network: nn.Module, path: Path) -> None:
+    """Write the head that tells a room's surfaces; pictures of any size that 32 divides."""
+    maps = {f"stride_{4 * 2**k}": torch.zeros(1, c, 96 >> k, 128 >> k) for k, c in enumerate(MAP_CHANNELS.values())}
+    example = (*maps.values(), torch.zeros(1, 96, 128))
+    names = [*maps, "rise"]
+    dynamic = {name: {2: f"h_{name}", 3: f"w_{name}"} for name in maps}
+    dynamic |= {"rise": {1: "h", 2: "w"}, "surfaces": {2: "h", 3: "w"}}
+    write_graph(network, example, path, inputs=names, outputs=["surfaces"], dynamic=dynamic, half_weights=True)
 
 
 def write_card(path: Path, categories: Sequence[str], **more: object) -> None:

@@ -38,11 +38,19 @@ def convolution(inputs: int, outputs: int, kernel: int = 3, stride: int = 1) -> 
 
 
 class Residual(nn.Module):
-    """Two convolutions through half the channels, added to the input."""
+    """Two convolutions through half the channels, added to the input.
 
-    def __init__(self, channels: int) -> None:
+    Args:
+        channels: of input and output.
+        dilation: cells between those that the second convolution joins.
+    """
+
+    def __init__(self, channels: int, dilation: int = 1) -> None:
         super().__init__()
-        self.inner = nn.Sequential(convolution(channels, channels // 2, 1), convolution(channels // 2, channels))
+        wide = convolution(channels // 2, channels)
+        if dilation > 1:
+            wide[0] = nn.Conv2d(channels // 2, channels, 3, padding=dilation, dilation=dilation, bias=False)
+        self.inner = nn.Sequential(convolution(channels, channels // 2, 1), wide)
 
     def forward(self, x: Float[Tensor, "b c h w"]) -> Float[Tensor, "b c h w"]:
         """The sum."""

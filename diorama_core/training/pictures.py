@@ -87,7 +87,7 @@ def read_picture(path: Path, k: int) -> LabelledPicture:
         unknown = np.full((len(categories), len(MEASURED)), -1, np.int8)
         forms = saved.get(f"forms_{k}", unknown)
         return LabelledPicture(
-            _decode(saved[f"jpeg_{k}"], path), saved[f"boxes_{k}"], categories, saved[f"pixels_{k}"], forms
+            decode_picture(saved[f"jpeg_{k}"], path), saved[f"boxes_{k}"], categories, saved[f"pixels_{k}"], forms
         )
 
 
@@ -99,7 +99,12 @@ def read_boxes(path: Path, k: int) -> tuple[Float32[np.ndarray, "n 4"], Int[np.n
         return boxes, categories, picture.size
 
 
-def _decode(data: UInt8[np.ndarray, "n"], path: Path) -> UInt8[np.ndarray, "h w 3"]:
+def decode_picture(data: UInt8[np.ndarray, "n"], path: Path) -> UInt8[np.ndarray, "h w 3"]:
+    """The pixels of an encoded picture of a file.
+
+    Raises:
+        InputError: when it is damaged.
+    """
     bgr = cv2.imdecode(data, cv2.IMREAD_COLOR)
     if bgr is None:
         raise InputError(f"{path}: a picture in it cannot be decoded; delete the file and render the room again")

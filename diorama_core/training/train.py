@@ -30,6 +30,7 @@ from diorama_core.training.networks import (
 from diorama_core.training.picture_files import BoxStatistics, PictureFiles
 from diorama_core.training.pictures import LabelledPicture
 from diorama_core.training.shape_views import ShapeViewFiles, crop_before
+from diorama_core.training.surfaces import SurfaceFiles, SurfaceHead, surface_loss
 from diorama_core.training.windows import WindowFiles
 
 SIZE = (320, 256)
@@ -343,3 +344,29 @@ def _as_photographed(
 def _pictures_tensor(pictures: Sequence[np.ndarray]) -> Tensor:
     stacked = np.stack(pictures).transpose(0, 3, 1, 2)
     return torch.from_numpy(np.ascontiguousarray(stacked)).float() / 255.0
+
+
+def surface_trainer(
+    files: SurfaceFiles, schedule: Schedule, checkpoint: Path, device: str = "cpu", workers: int = 1
+) -> Trainer:
+    """Everything needed to train the head that tells a room's surfaces.
+
+    Args:
+        files: what is learnt from.
+        schedule: of the steps.
+        checkpoint: file from which training goes on, and to which it is saved.
+        device: cpu or cuda.
+        workers: processes that read pictures and look at them with the backbone.
+    """
+    torch.manual_seed(schedule.seed + 3)
+
+    def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:
+        return files.batch(schedule.batch, rng)
+
+    def loss(network: nn.Module, batch: tuple[Tensor, ...]) -> tuple[Tensor, str]:
+        assert isinstance(network, SurfaceHead)
+        with torch.autocast(device, enabled=False):  # dilated convolutions lose their gradients in bfloat16
+            total, right = surface_loss(network.logits(*batch[:-1]), batch[-1])
+        return total, f"loss {float(total.detach()):.3f}, surfaces right {right:.3f}"
+
+    return Trainer(SurfaceHead(), loss, batch_of, schedule, checkpoint, device, workers)

@@ -1,16 +1,20 @@
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from diorama_core.artefacts import LabelledBox, Photo
+from diorama_core.models.room_surfaces import CELL_PX, RoomSurfaces, SurfaceReader, elevation_sines
 from diorama_core.multiview.sphere_views import (
     SphereBox,
     merge_detections,
     picture_boxes,
     project_to_views,
+    sphere_surfaces,
     sphere_views,
     to_sphere_boxes,
     view_photo,
@@ -78,3 +82,24 @@ def test_a_view_s_picture_has_its_camera_s_size() -> None:
     photo = view_photo(np.zeros((128, 256, 3), np.uint8), np.eye(3), VIEWS[1], "a.png")
     k = VIEWS[1].intrinsics
     assert (photo.width, photo.height) == (k.width, k.height)
+
+
+class HorizonReader(SurfaceReader):
+    """Tells floor below a low elevation and ceiling above a high one."""
+
+    def read(self, rgb: np.ndarray, camera: Camera) -> RoomSurfaces:
+        rise = elevation_sines(camera, (rgb.shape[0] // CELL_PX, rgb.shape[1] // CELL_PX))
+        kinds = np.where(rise < np.sin(-0.3), 0, np.where(rise > np.sin(0.5), 2, 1))
+        return RoomSurfaces(np.moveaxis(np.eye(3, dtype=np.float32)[kinds], -1, 0), np.zeros(kinds.shape, np.float32))
+
+
+def test_what_views_show_of_floor_and_ceiling_is_one_map_all_round() -> None:
+    level = np.zeros((128, 256, 3), np.uint8)
+    shares = sphere_surfaces(level, HorizonReader(Path("none"), "none"))
+    elevation = np.pi * (0.5 - (np.arange(shares.shape[1]) + 0.5) / shares.shape[1])
+    told = np.abs(elevation) < 1.0
+    expected = np.where(elevation < -0.3, 0, np.where(elevation > 0.5, 2, 1))
+    clear = told & (np.abs(elevation + 0.3) > 0.03) & (np.abs(elevation - 0.5) > 0.03)
+    assert (shares.argmax(axis=0)[clear] == expected[clear, None]).all()
+    assert (shares.max(axis=0)[clear] > 0.9).all()
+    np.testing.assert_allclose(shares[:, 0], 1 / 3, atol=1e-6, err_msg="no view looks straight up")
