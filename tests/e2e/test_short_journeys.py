@@ -98,10 +98,18 @@ def click_object(hand: Hand, item: SceneObject) -> None:
 
 
 def nearest(scene: Scene) -> SceneObject:
-    """What has other shapes and stands nearest to the photo's camera, where nothing hides it."""
+    """What has other shapes and stands on the floor nearest to the photo's camera, where nothing hides it."""
     assert scene.camera is not None
-    eye, flat = scene.camera.position, ("rug",)
-    several = [o for o in scene.objects if len({c.shape_id for c in o.candidates}) > 1 and o.category not in flat]
+    eye, floor = scene.camera.position, scene.architecture.floor
+    assert floor is not None
+    several = [
+        o
+        for o in scene.objects
+        if len({c.shape_id for c in o.candidates}) > 1
+        and o.category != "rug"
+        and (edge := scene.support_of(o.id)) is not None
+        and edge.parent == floor.id
+    ]
     return min(several, key=lambda o: float(np.linalg.norm(o.pose.position[:2] - eye[:2])))
 
 
