@@ -11,13 +11,18 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float
-from scipy.special import logit
+from jaxtyping import Bool, Float, Int, UInt8
+from scipy.ndimage import gaussian_filter
+from scipy.spatial import ConvexHull, QhullError
 
 from diorama_core.architecture.from_depth import view_headings
 from diorama_core.architecture.single_view.room_cues import EDGE_THRESHOLD, RoomCues
-from diorama_core.models.room_surfaces import RoomSurfaces
+from diorama_core.architecture.texture.colours import object_pixels
+from diorama_core.artefacts import DetectedObject
 from diorama_core.scene.types import Camera
+
+LAB_BINS = np.array([16.0, 5.0, 5.0])
+"""Widths of the histograms' cells, levels of 255."""
 
 
 @dataclass(frozen=True)
@@ -27,8 +32,15 @@ class LevelViewSettings:
     headings: int = 144
     slopes: int = 160
     steepest: float = 6.0
-    clearest_odds: float = 4.0
-    """Logarithms of odds are clipped to this."""
+    colour_side_px: int = 400
+    horizon_m: float = 8.0
+    """Floor farther away than this cannot be distinguished from the walls behind it."""
+    overhead_slope: float = 0.18
+    """Ceilings are not visible below this slope above the horizon."""
+    unseen_colour: float = 3e-4
+    clearest_ratio: float = 3.0
+    """Log-likelihood ratios are clipped to this."""
+    enough_seeds: int = 120
 
 
 SETTINGS = LevelViewSettings()
@@ -44,13 +56,10 @@ class LevelView:
     """Borders of the rows."""
     share: Float[np.ndarray, "m k"]
     """Share of the picture that each cell covers; 0 outside it."""
-    floor_odds: Float[np.ndarray, "m k"]
-    ceiling_odds: Float[np.ndarray, "m k"]
-    """-1 to 1: whether the room shows floor, or ceiling, there; 0 where that is unknown or an object hides it."""
-    slant: Float[np.ndarray, "m"]
-    """Slant of the wall (`models.room_surfaces`) in each heading,"""
-    walls_seen: Float[np.ndarray, "m"]
-    """and the share of the picture that shows it."""
+    floor_ratio: Float[np.ndarray, "m k"]
+    """-1 to 1: whether the colour is the floor's or the walls'; 0 where that is unknown or an object hides it."""
+    lines: Float[np.ndarray, "m k 3"]
+    """Share of all line evidence that runs along each room axis in a cell."""
     upright: Float[np.ndarray, "m1 k"]
     """Upright edges along the borders of headings: response over the threshold times length in picture diagonals."""
 
@@ -64,35 +73,25 @@ class LevelView:
         return np.interp(slope, self.slopes, np.arange(len(self.slopes)))
 
 
-def level_view(cues: RoomCues, surfaces: RoomSurfaces | None, hidden: Bool[np.ndarray, "h w"]) -> LevelView:
-    """The precomputed evidence for scoring walls by headings.
-
-    Args:
-        cues: lines and objects.
-        surfaces: of the room in the whole picture; None where nothing tells them.
-        hidden: pixels of objects: what is behind them is a guess.
-    """
+def level_view(rgb: UInt8[np.ndarray, "h w 3"], cues: RoomCues, objects: tuple[DetectedObject, ...]) -> LevelView:
+    """The precomputed evidence for scoring walls by headings."""
     camera = cues.camera
     low, high = view_headings(camera)
     edges = np.linspace(low, high, SETTINGS.headings + 1)
     slopes = _slopes(camera)
     middles, rows = 0.5 * (edges[1:] + edges[:-1]), 0.5 * (slopes[1:] + slopes[:-1])
     pixels, inside = project_directions(camera, _directions(middles, rows))
-    share = _cell_shares(camera, edges, slopes) * inside
-    share /= max(float(share.sum()), 1e-9)
-    shares, slant = _sample_surfaces(surfaces, camera, pixels, inside)
-    columns, lines = np.moveaxis(np.where(inside[..., None], pixels, 0.0).astype(int), -1, 0)
+    hidden = object_pixels((rgb.shape[0], rgb.shape[1]), objects)
+    columns, lines = (np.where(inside, pixels[..., i], 0).astype(int) for i in (0, 1))
     free = inside & ~hidden[lines, columns]
-    walls = shares[1] * share * free
+    share = _cell_shares(camera, edges, slopes) * inside
     return LevelView(
         camera=camera,
         edges_rad=edges,
         slopes=slopes,
-        share=share,
-        floor_odds=_odds(shares[0]) * free,
-        ceiling_odds=_odds(shares[2]) * free,
-        slant=(slant * walls).sum(axis=1) / np.maximum(walls.sum(axis=1), 1e-9),
-        walls_seen=walls.sum(axis=1),
+        share=share / max(float(share.sum()), 1e-9),
+        floor_ratio=_floor_ratio(_small_lab(rgb), pixels / np.array(rgb.shape[1::-1]), free, middles, rows, cues),
+        lines=_line_shares(cues, edges, slopes),
         upright=_upright(cues, edges, slopes),
     )
 
@@ -138,23 +137,76 @@ def _cell_shares(
     return np.asarray(np.abs(across[..., 0] * up[..., 1] - across[..., 1] * up[..., 0]))
 
 
-def _sample_surfaces(
-    surfaces: RoomSurfaces | None, camera: Camera, pixels: Float[np.ndarray, "m k 2"], inside: Bool[np.ndarray, "m k"]
-) -> tuple[Float[np.ndarray, "3 m k"], Float[np.ndarray, "m k"]]:
-    """Probabilities of the surfaces and the slant at pixels; even odds and no wall where they are not known."""
-    unknown = np.broadcast_to(np.array([0.5, 0.0, 0.5])[:, None, None], (3, *inside.shape))
-    if surfaces is None:
-        return unknown, np.zeros(inside.shape)
-    k, cells = camera.intrinsics, np.array(surfaces.slant.shape[::-1])
-    at = np.where(inside[..., None], pixels / (k.width, k.height) * cells - 0.5, 0.0).astype(np.float32)
-    maps = (*surfaces.shares, surfaces.slant)
-    *shares, slant = (cv2.remap(m, at, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE) for m in maps)
-    return np.where(inside, np.stack(shares), unknown), slant
+def _small_lab(rgb: UInt8[np.ndarray, "h w 3"]) -> UInt8[np.ndarray, "hs ws 3"]:
+    scale = min(1.0, SETTINGS.colour_side_px / max(rgb.shape[:2]))
+    small = cv2.resize(rgb, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    return np.asarray(cv2.cvtColor(cv2.medianBlur(small, 3), cv2.COLOR_RGB2LAB))
 
 
-def _odds(share: Float[np.ndarray, "m k"]) -> Float[np.ndarray, "m k"]:
-    """Logarithms of odds over the clearest, -1 to 1."""
-    return np.clip(logit(np.clip(share, 1e-6, 1 - 1e-6)) / SETTINGS.clearest_odds, -1.0, 1.0)
+def _floor_ratio(
+    lab: UInt8[np.ndarray, "hs ws 3"],
+    place: Float[np.ndarray, "m k 2"],
+    free: Bool[np.ndarray, "m k"],
+    headings: Float[np.ndarray, "m"],
+    slopes: Float[np.ndarray, "k"],
+    cues: RoomCues,
+) -> Float[np.ndarray, "m k"]:
+    """Log-likelihood ratio of floor colours (between objects on the floor) and wall colours (at eye height)."""
+    shape = np.array(lab.shape[1::-1])
+    columns, rows = np.moveaxis(np.where(free[..., None], place, 0) * shape, -1, 0).astype(int)
+    cells = (lab[rows.clip(0, lab.shape[0] - 1), columns.clip(0, lab.shape[1] - 1)] / LAB_BINS).astype(int)
+    floor = free & _hits_sure_floor(headings, slopes, cues)
+    eye = float(cues.camera.position[2])
+    wall = free & ((slopes > -eye / SETTINGS.horizon_m) & (slopes < SETTINGS.overhead_slope))[None]
+    if min(floor.sum(), wall.sum()) < SETTINGS.enough_seeds:
+        return np.zeros(free.shape)
+    ratio = np.log(_frequency(cells, floor) + SETTINGS.unseen_colour) - np.log(
+        _frequency(cells, wall) + SETTINGS.unseen_colour
+    )
+    return np.where(free, np.clip(ratio / SETTINGS.clearest_ratio, -1.0, 1.0), 0.0)
+
+
+def _frequency(cells: Int[np.ndarray, "m k 3"], chosen: Bool[np.ndarray, "m k"]) -> Float[np.ndarray, "m k"]:
+    """How usual each cell's colour is among the chosen ones, blurred over like colours."""
+    bins = np.ceil(256.0 / LAB_BINS).astype(int)
+    counts = np.zeros(bins)
+    np.add.at(counts, tuple(cells[chosen].T), 1.0)
+    smooth: Float[np.ndarray, "a b c"] = gaussian_filter(counts / max(int(chosen.sum()), 1), sigma=(0.9, 0.7, 0.7))
+    return np.asarray(smooth[tuple(np.moveaxis(cells, -1, 0))])
+
+
+def _hits_sure_floor(
+    headings: Float[np.ndarray, "m"], slopes: Float[np.ndarray, "k"], cues: RoomCues
+) -> Bool[np.ndarray, "m k"]:
+    """Lines of sight that would meet the floor between the camera and the objects that stand in the room."""
+    eye = cues.camera.position
+    reach = np.where(slopes < -1e-3, eye[2] / np.maximum(-slopes, 1e-3), np.inf)
+    on_floor = np.broadcast_to(np.isfinite(reach)[None], (len(headings), len(slopes)))
+    spots = [eye[:2]]
+    for low, high in zip(cues.object_low, cues.object_high, strict=True):
+        spots += [np.array([x, y]) for x in (low[0], high[0]) for y in (low[1], high[1])]
+    try:
+        bounds = ConvexHull(np.array(spots)).equations
+    except (QhullError, ValueError):
+        return on_floor & False
+    across = np.stack([np.sin(headings), np.cos(headings)], axis=-1)
+    points = eye[:2] + np.where(np.isfinite(reach), reach, 0.0)[None, :, None] * across[:, None]
+    return np.asarray(on_floor & (points @ bounds[:, :2].T + bounds[:, 2] <= 0).all(axis=-1))
+
+
+def _line_shares(
+    cues: RoomCues, edges: Float[np.ndarray, "m1"], slopes: Float[np.ndarray, "k1"]
+) -> Float[np.ndarray, "m k 3"]:
+    """Line evidence by heading, slope and axis."""
+    d = cues.directions
+    shares = np.zeros((len(edges) - 1, len(slopes) - 1, 3))
+    if len(d) == 0:
+        return shares
+    column = np.searchsorted(edges, np.arctan2(d[:, 0], d[:, 1])) - 1
+    row = np.searchsorted(slopes, d[:, 2] / np.maximum(np.linalg.norm(d[:, :2], axis=1), 1e-6)) - 1
+    ok = (column >= 0) & (column < shares.shape[0]) & (row >= 0) & (row < shares.shape[1])
+    np.add.at(shares, (column[ok], row[ok], cues.ray_axes[ok]), cues.ray_weights[ok])
+    return shares
 
 
 def _upright(

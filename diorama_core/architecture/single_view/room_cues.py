@@ -36,6 +36,12 @@ class RoomCues:
     """What a photo tells of its room, computed once."""
 
     camera: Camera
+    directions: Float[np.ndarray, "s 3"]
+    """World rays through points of segments that lie on the room's surfaces."""
+    ray_axes: Int[np.ndarray, "s"]
+    """The room axis (0 x, 1 y, 2 z) each ray's segment runs along."""
+    ray_weights: Float[np.ndarray, "s"]
+    """Sum to one."""
     edge_maps: Float32[np.ndarray, "3 hm wm"]
     """Response to edges along each axis; `EDGE_THRESHOLD`, that is neutral, where objects are."""
     map_scale: float
@@ -101,6 +107,7 @@ def gather_room_cues(
     free = ~_lie_on_objects(segments, standing, rgb.shape[:2])
     map_scale = min(1.0, settings.map_side_px / max(rgb.shape[:2]))
     middle = 0.5 * (segments[:, :2] + segments[:, 2:])
+    directions, ray_axes, weights = _surface_rays(segments[free], axes[free], camera)
     hung = {o.id for o in objects if category(o.category).mount == "ceiling"}
     names = {c.object_id: UNKNOWN.name for c in cuboids} | {o.id: o.category for o in objects}
     solid = [c for c in cuboids if names[c.object_id] not in _WALL_CATEGORIES]
@@ -114,6 +121,9 @@ def gather_room_cues(
     edge_maps = [_edge_map(segments[axes == axis], *frame, level=axis < 2) for axis in range(3)]
     return RoomCues(
         camera=camera,
+        directions=directions,
+        ray_axes=ray_axes,
+        ray_weights=weights,
         edge_maps=np.stack(edge_maps),
         map_scale=map_scale,
         segment_rays=camera.rays(middle[free]),
@@ -177,6 +187,20 @@ def _lie_on_objects(
 
     ends = is_covered(segments[:, :2]) & is_covered(segments[:, 2:])
     return is_covered(0.5 * (segments[:, :2] + segments[:, 2:])) | ends
+
+
+def _surface_rays(
+    segments: Float[np.ndarray, "n 4"], axes: Int[np.ndarray, "n"], camera: Camera
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rays through three points of each segment, its axis, and its length capped and shared among them."""
+    if len(segments) == 0:
+        return np.zeros((0, 3)), np.zeros(0, dtype=int), np.zeros(0)
+    lengths = np.linalg.norm(segments[:, 2:] - segments[:, :2], axis=1)
+    lengths = np.minimum(lengths, np.quantile(lengths, 0.95))
+    shares = np.array([0.15, 0.5, 0.85])[None, :, None]
+    points = segments[:, None, :2] + shares * (segments[:, 2:] - segments[:, :2])[:, None]
+    weights = np.repeat(lengths, 3)
+    return camera.rays(points.reshape(-1, 2)), np.repeat(axes, 3), weights / weights.sum()
 
 
 def _edge_map(

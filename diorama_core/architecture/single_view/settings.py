@@ -40,10 +40,7 @@ class RoomSearchSettings:
     above_camera_m: float = 0.4
     """Least height of these above the camera."""
     region_weight: float = 6.0
-    """Of floor and ceiling where the picture shows them, as shares of it,"""
-    slant_weight: float = 3.0
-    slant_cap: float = 0.7
-    """and of the wall's slant, up to so large an error: the head is right or takes one wall for another."""
+    line_weight: float = 2.5
     skirtings_m: tuple[float, ...] = (0.06, 0.08, 0.1, 0.12)
     """Usual heights of skirting boards, whose upper edge is a line above a wall's foot as clear as the foot itself."""
     upright_weight: float = 1.5
@@ -68,10 +65,9 @@ class RoomSearchSettings:
     enough_edge: float = 0.25
     edge_trust: float = 0.7
     """Edges free to be seen over so many picture diagonals can be relied on; and how much they count for confidence."""
-    enough_surface: float = 0.004
-    surface_trust: float = 0.25
-    """Share of the picture that must show floor, and wall, for their border to be known; and how much it counts for
-    confidence: in photos the head is right less often than it is sure."""
+    enough_colour: float = 0.004
+    colour_trust: float = 0.45
+    """Visible share of floor and wall at which their colours are distinguishable, and its weight."""
     grazing: float = 0.06
     """Walls are not looked for where they are seen more aslant than this, nor beyond"""
     reach_m: float = 15.0

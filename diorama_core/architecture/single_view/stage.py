@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -21,7 +21,7 @@ from diorama_core.architecture.single_view.wall_chain import (
     refine_chain,
 )
 from diorama_core.architecture.supports import resolve_supports
-from diorama_core.architecture.texture.colours import colour_planes, object_pixels, visible_planes
+from diorama_core.architecture.texture.colours import colour_planes, visible_planes
 from diorama_core.architecture.walls.ceilings import CeilingPiece
 from diorama_core.architecture.walls.closed_room import GUESS_CONFIDENCE, room_planes
 from diorama_core.architecture.walls.openings import WallOpening, counts
@@ -30,7 +30,6 @@ from diorama_core.architecture.walls.wall_candidates import WallCandidate
 from diorama_core.architecture.walls.wall_path import Run, heading
 from diorama_core.architecture.walls.wall_sequence import CORNER_SLACK_RAD, WallPiece, chain_runs, meeting_point
 from diorama_core.artefacts import ArchitectureEstimate, DetectedObject, Inputs, ObjectGeometry
-from diorama_core.models.room_surfaces import SurfaceReader, own_surface_reader
 from diorama_core.progress import Progress
 from diorama_core.provenance import RoomMethod, RoomSource
 from diorama_core.scene.types import Architecture, Plane
@@ -47,8 +46,6 @@ class PhotoRoom:
     """
 
     settings: PhotoRoomSettings = SETTINGS
-    surfaces: SurfaceReader | None = field(default_factory=own_surface_reader)
-    """Tells floor, walls and ceiling behind the furniture; lines and objects alone decide without it."""
 
     def reconstruct(
         self, inputs: Inputs, objects: tuple[DetectedObject, ...], geometry: ObjectGeometry, progress: Progress
@@ -61,9 +58,7 @@ class PhotoRoom:
         progress.report(0.0, "Looking for the room's walls")
         cues = gather_room_cues(inputs.photo.rgb, geometry.camera, objects, geometry.cuboids, self.settings.cues)
         progress.report(0.4, "Following the walls from left to right")
-        surfaces = None if self.surfaces is None else self.surfaces.read(inputs.photo.rgb, geometry.camera)
-        hidden = object_pixels(inputs.photo.rgb.shape[:2], objects)
-        scorer = ChainScorer(cues, level_view(cues, surfaces, hidden), self.settings)
+        scorer = ChainScorer(cues, level_view(inputs.photo.rgb, cues, objects), self.settings)
         chain = find_chain(scorer, self.settings.search)
         sure = GUESS_CONFIDENCE + (0.9 - GUESS_CONFIDENCE) * scorer.support(chain)
         pieces = _pieces(chain, scorer, sure, self.settings.search)

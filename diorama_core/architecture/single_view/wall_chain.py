@@ -1,8 +1,8 @@
 """The best chain of walls for a photo, by dynamic programming over the headings of the level view.
 
 Candidates are upright planes of a few directions at many distances. In a heading each costs what it makes of the
-column: floor and ceiling where the picture shows none, a wall that is turned otherwise, missing edges at its foot and
-top, objects that would stick through it. A transition between walls costs a corner, less at a visible vertical edge.
+column: floor-coloured wall, lines that stand out of their surface, missing edges at its foot and top, objects that
+would stick through it. A transition between walls costs a corner, less at a visible vertical edge.
 """
 
 from __future__ import annotations
@@ -67,6 +67,8 @@ class _BelowCeiling:
     met: Bool[np.ndarray, "w m"]
     floor: Float[np.ndarray, "w m"]
     """Cost of the floor before the wall."""
+    upright: Float[np.ndarray, "w m"]
+    """Cost of the wall as if it went on below the floor."""
     foot: Float[np.ndarray, "w m"]
     skirting: Float[np.ndarray, "w m"]
     others: Float[np.ndarray, "w m"]
@@ -85,8 +87,7 @@ class ChainScorer:
     def costs(self, walls: PhotoWalls, ceiling_m: float) -> Float[np.ndarray, "w m"]:
         """Cost of every wall in every heading."""
         low = self._costs_below_ceiling(walls)
-        overhead, top = self._sums[1], self.view.row_of((ceiling_m - self.cues.camera.position[2]) / low.near)
-        total = low.floor + overhead[:, -1] - _upto(overhead, top)
+        total = self._surfaces(walls, low, (ceiling_m - self.cues.camera.position[2]) / low.near)
         total -= self.settings.cues.edge_weight * (low.foot + self._edge(walls, low.near, ceiling_m)[0])
         total -= self.settings.cues.edge_weight * low.skirting
         total += low.others
@@ -99,13 +100,15 @@ class ChainScorer:
             met = np.isfinite(reach)
             near = np.where(met, reach, 1.0)
             rows = self.view.row_of(-self.cues.camera.position[2] / near)
+            level, _, uprights = self._sums
             self._known[walls] = _BelowCeiling(
                 near,
                 met,
-                _upto(self._sums[0], rows),
+                _upto(level, rows),
+                _upto_of(uprights, np.minimum(walls.directions, 2), rows),
                 self._edge(walls, near, 0.0)[0],
                 self._skirting(walls, near),
-                self._objects(near) + self._backs(near) + self._usual(walls, near) + self._slants(walls),
+                self._objects(near) + self._backs(near) + self._usual(walls, near),
             )
         return self._known[walls]
 
@@ -123,21 +126,34 @@ class ChainScorer:
         return np.where((slope < -s.grazing) & (distance < s.reach_m), distance, np.inf)
 
     @cached_property
-    def _sums(self) -> tuple[Float[np.ndarray, "m k1"], Float[np.ndarray, "m k1"]]:
-        """Costs of floor and of ceiling against wall, summed from the lowest row up."""
-        shares = -self.settings.search.region_weight * self.view.share
-        return _cumulative_sum(shares * self.view.floor_odds), _cumulative_sum(shares * self.view.ceiling_odds)
+    def _sums(self) -> tuple[Float[np.ndarray, "m k1"], Float[np.ndarray, "m k1"], Float[np.ndarray, "3 m k1"]]:
+        """Costs of floor, ceiling, and walls along x, along y and aslant, summed from the lowest row up."""
+        v = self.view
+        colour = self.settings.search.region_weight * v.floor_ratio * v.share
+        level = self.settings.search.line_weight * v.lines[..., 2]
+        along = (v.lines[..., 0], v.lines[..., 1], v.lines[..., 0] + v.lines[..., 1])
+        uprights = [_cumulative_sum(0.5 * colour + self.settings.search.line_weight * lines) for lines in along]
+        return _cumulative_sum(-0.5 * colour + level), _cumulative_sum(0.5 * colour + level), np.stack(uprights)
+
+    def _surfaces(
+        self, walls: PhotoWalls, low: _BelowCeiling, top: Float[np.ndarray, "w m"]
+    ) -> Float[np.ndarray, "w m"]:
+        """Floor, wall and ceiling, each where the candidate puts it, against colours and lines."""
+        _, overhead, uprights = self._sums
+        rows = self.view.row_of(top)
+        total = low.floor + _upto_of(uprights, np.minimum(walls.directions, 2), rows) - low.upright
+        return np.asarray(total + (overhead[:, -1] - _upto(overhead, rows)))
 
     def support(self, chain: Chain) -> Float[np.ndarray, "r"]:
-        """How far each wall of a chain is seen, 0 to 1: foot and top as edges, and a floor that ends at the foot."""
+        """How far each wall of a chain is seen, 0 to 1: foot and top as edges, and colours that change at the foot."""
         reach, s = self.reach(chain.walls), self.settings.search
         near = np.where(np.isfinite(reach), reach, s.farthest_m)
         sides = [self._edge(chain.walls, near, height) for height in (0.0, chain.ceiling_m)]
         skirting = self._skirting(chain.walls, near)
         sides.append((skirting, np.where(skirting > 0.0, sides[0][1], 0.0)))
         eye = float(self.cues.camera.position[2])
-        weights = np.where(self.view.floor_odds != 0, self.view.share, 0.0)
-        colour, known = (_cumulative_sum(x) for x in (self.view.floor_odds * self.view.share, weights))
+        weights = np.where(self.view.floor_ratio != 0, self.view.share, 0.0)
+        colour, known = (_cumulative_sum(x) for x in (self.view.floor_ratio * self.view.share, weights))
         supports = []
         for run, (first, last) in enumerate(pairwise(chain.borders)):
             columns = slice(first, last)
@@ -146,8 +162,8 @@ class ChainScorer:
             foot = self.view.row_of(-eye / near[run : run + 1, columns])
             below, every = (_upto(x[columns], foot)[0] for x in (colour, known))
             apart = float((2.0 * below - colour[columns, -1]).sum()) / max(float(known[columns, -1].sum()), 1e-9)
-            both = min(float(every.sum()), float((known[columns, -1] - every).sum())) > s.enough_surface
-            supports.append(min(1.0, s.edge_trust * edge + s.surface_trust * max(apart, 0.0) * both))
+            both = min(float(every.sum()), float((known[columns, -1] - every).sum())) > s.enough_colour
+            supports.append(min(1.0, s.edge_trust * edge + s.colour_trust * max(apart, 0.0) * both))
         return np.array(supports)
 
     def _edge(
@@ -221,13 +237,6 @@ class ChainScorer:
         odd = 0.5 * np.minimum((np.log(gap / usual) / 0.5) ** 2, 9.0)
         beyond = np.log(np.maximum(near / self.settings.search.far_m, 1.0)) / self.settings.search.far_log_sigma
         return self.settings.cues.prior_weight / near.shape[1] * (odd[:, None] + 0.5 * np.minimum(beyond**2, 9.0))
-
-    def _slants(self, walls: PhotoWalls) -> Float[np.ndarray, "w m"]:
-        """Walls that are turned otherwise than the picture shows walls to be in a heading."""
-        v, s = self.view, self.settings.search
-        into, across = -walls.normals, np.stack([np.sin(v.middles_rad), np.cos(v.middles_rad)])
-        expected = into[:, :1] * across[1] - into[:, 1:] * across[0]
-        return np.asarray(s.slant_weight * v.walls_seen * np.minimum(np.abs(expected - v.slant), s.slant_cap))
 
     def ceiling_prior(self, ceiling_m: float) -> float:
         """Cost of a height, and of objects that hang from above it."""
@@ -327,6 +336,15 @@ def leaves(
 
 def _cumulative_sum(cells: Float[np.ndarray, "m k"]) -> Float[np.ndarray, "m k1"]:
     return np.concatenate([np.zeros((len(cells), 1)), np.cumsum(cells, axis=1)], axis=1)
+
+
+def _upto_of(
+    summed: Float[np.ndarray, "d m k1"], which: Int[np.ndarray, "w"], rows: Float[np.ndarray, "w m"]
+) -> Float[np.ndarray, "w m"]:
+    """Sums below fractional rows, for each wall of its own table."""
+    below = np.minimum(rows.astype(int), summed.shape[2] - 2)
+    part, table, column = rows - below, which[:, None], np.arange(rows.shape[1])
+    return np.asarray(summed[table, column, below] * (1.0 - part) + summed[table, column, below + 1] * part)
 
 
 def _upto(summed: Float[np.ndarray, "m k1"], rows: Float[np.ndarray, "w m"]) -> Float[np.ndarray, "w m"]:

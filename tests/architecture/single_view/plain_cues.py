@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from diorama_core.architecture.single_view.room_cues import EDGE_THRESHOLD, RoomCues
-from diorama_core.architecture.texture.colours import visible_planes
-from diorama_core.models.room_surfaces import CELL_PX, OUTPUTS, RoomSurfaces
-from tests.synthetic_rooms import Shot, look
+from tests.synthetic_rooms import look
 
 CAMERA = look(0.0, 10.0, 1.5, 70.0, (320, 240))
 
@@ -16,6 +14,9 @@ def cues(**given) -> RoomCues:
     """No lines, neutral edge maps, no objects, unless given."""
     neutral = {
         "camera": CAMERA,
+        "directions": np.zeros((0, 3)),
+        "ray_axes": np.zeros(0, dtype=int),
+        "ray_weights": np.zeros(0),
         "edge_maps": np.full((3, 240, 320), EDGE_THRESHOLD, np.float32),
         "map_scale": 1.0,
         "segment_rays": np.zeros((0, 3)),
@@ -30,19 +31,6 @@ def cues(**given) -> RoomCues:
     }
     neutral["object_portable"] = np.zeros(len(given.get("object_weights", ())), dtype=bool)
     return RoomCues(**(neutral | given))
-
-
-def true_surfaces(shot: Shot) -> RoomSurfaces:
-    """What the reader of surfaces would tell of a picture if it were always right and sure."""
-    shown = visible_planes(shot.planes, shot.camera, CELL_PX)
-    kinds = np.array([OUTPUTS.index(plane.role) for plane in shot.planes])[shown]
-    k = shot.camera.intrinsics
-    columns, rows = np.meshgrid(np.arange(0, k.width, CELL_PX) + 0.5, np.arange(0, k.height, CELL_PX) + 0.5)
-    x, y = np.moveaxis(shot.camera.rays(np.stack([columns, rows], axis=-1))[..., :2], -1, 0)
-    into = -np.array([plane.normal[:2] for plane in shot.planes])[shown]
-    slant = (into[..., 0] * y - into[..., 1] * x) / np.hypot(x, y)
-    shares = np.moveaxis(np.eye(3, dtype=np.float32)[kinds], -1, 0)
-    return RoomSurfaces(shares, np.where(kinds == 1, slant, 0.0).astype(np.float32))
 
 
 def drawn_edges(camera, boundaries) -> np.ndarray:

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from diorama_core.architecture.single_view.level_view import LevelView, level_view, project_directions, response
 from diorama_core.architecture.single_view.room_cues import EDGE_THRESHOLD, gather_room_cues
-from diorama_core.architecture.texture.colours import object_pixels
-from tests.architecture.single_view.plain_cues import CAMERA, cues, true_surfaces
+from tests.architecture.single_view.plain_cues import CAMERA, cues
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 SHOT = shoot(
@@ -20,13 +19,10 @@ SHOT = shoot(
 )
 
 
-NOTHING = np.zeros((240, 320), bool)
-
-
 @cache
 def view() -> LevelView:
     found = gather_room_cues(SHOT.inputs.photo.rgb, SHOT.camera, SHOT.objects, SHOT.cuboids)
-    return level_view(found, true_surfaces(SHOT), object_pixels((240, 320), SHOT.objects))
+    return level_view(SHOT.inputs.photo.rgb, found, SHOT.objects)
 
 
 @given(x=st.floats(-3, 3), y=st.floats(-3, 5), z=st.floats(-1, 3))
@@ -59,22 +55,20 @@ def test_rows_and_slopes_are_inverse() -> None:
     np.testing.assert_allclose(v.row_of(slopes), rows, atol=1e-6)
 
 
-def test_floor_and_ceiling_are_told_from_walls() -> None:
+def test_the_floors_colour_is_told_from_the_walls() -> None:
     v = view()
     middle = np.abs(v.middles_rad) < 0.05
     rows = 0.5 * (v.slopes[1:] + v.slopes[:-1])
+    floor = rows < -1.5 / 3.9
+    wall = (rows > -1.5 / 4.1) & (rows < 0.15)
     seen = v.share[middle] > 0
-    floor, wall, ceiling = rows < -1.5 / 3.8, (rows > -1.5 / 4.2) & (rows < 0.2), rows > 1.1 / 3.8
-    assert (v.floor_odds[middle][seen & floor[None]] == 1.0).all()
-    assert (v.floor_odds[middle][seen & wall[None]] == -1.0).all()
-    assert (v.ceiling_odds[middle][seen & ceiling[None]] == 1.0).all()
-    assert (v.ceiling_odds[middle][seen & (wall | floor)[None]] == -1.0).all()
-    assert not v.floor_odds[v.share == 0].any()
-    assert not v.ceiling_odds[v.share == 0].any()
-    assert v.slant[middle] == pytest.approx(-np.sin(v.middles_rad[middle]), abs=0.02), "the far wall, seen straight"
+    ratio = v.floor_ratio[middle]
+    assert ratio[seen & floor[None]].mean() > 0.5
+    assert ratio[seen & wall[None]].mean() < -0.5
+    assert (v.floor_ratio[v.share == 0] == 0).all()
 
 
-def test_pixels_of_objects_tell_nothing_of_the_room() -> None:
+def test_pixels_of_objects_have_no_colour_of_floor_or_wall() -> None:
     v = view()
     table = next(o for o in SHOT.objects if o.id == "table")
     columns, rows = np.meshgrid(v.middles_rad, 0.5 * (v.slopes[1:] + v.slopes[:-1]), indexing="ij")
@@ -82,14 +76,18 @@ def test_pixels_of_objects_tell_nothing_of_the_room() -> None:
     x, y = np.moveaxis(np.where(inside[..., None], pixels, 0).astype(int), -1, 0)
     on_table = inside & table.mask[y, x]
     assert on_table.sum() > 100
-    assert (v.floor_odds[on_table] == 0).all()
+    assert (v.floor_ratio[on_table] == 0).all()
 
 
-def test_without_a_reader_nothing_is_known_of_surfaces() -> None:
-    found = gather_room_cues(SHOT.inputs.photo.rgb, SHOT.camera, (), ())
-    v = level_view(found, None, NOTHING)
-    assert not v.floor_odds.any()
-    assert not v.ceiling_odds.any()
+def test_lines_fall_into_the_cells_that_their_rays_meet() -> None:
+    rays = np.array([[0.0, 1.0, -0.2], [0.1, 1.0, 0.1], [0.0, -1.0, 0.0]])
+    given_cues = cues(directions=rays, ray_axes=np.array([0, 2, 1]), ray_weights=np.array([0.5, 0.3, 0.2]))
+    v = level_view(np.full((240, 320, 3), 128, np.uint8), given_cues, ())
+    np.testing.assert_allclose(v.lines.sum(axis=(0, 1)), [0.5, 0.0, 0.3])
+    m, k, axis = np.argwhere(v.lines == 0.5)[0]
+    assert v.edges_rad[m] <= 0.0 <= v.edges_rad[m + 1]
+    assert v.slopes[k] <= -0.2 <= v.slopes[k + 1]
+    assert axis == 0
 
 
 def test_upright_edges_show_at_the_heading_of_the_corner() -> None:
@@ -99,9 +97,14 @@ def test_upright_edges_show_at_the_heading_of_the_corner() -> None:
     ok = (columns > 1) & (columns < 318) & (rows >= 0) & (rows < 240)
     for shift in (-1, 0, 1):
         edge_maps[2, rows[ok], columns[ok] + shift] = 1.0
-    v = level_view(cues(edge_maps=edge_maps), None, NOTHING)
+    v = level_view(np.full((240, 320, 3), 128, np.uint8), cues(edge_maps=edge_maps), ())
     best = v.edges_rad[v.upright.sum(axis=1).argmax()]
     assert best == pytest.approx(np.arctan2(1.0, 4.0), abs=np.deg2rad(1.0))
+
+
+def test_a_picture_without_objects_knows_no_floor_colour() -> None:
+    found = gather_room_cues(SHOT.inputs.photo.rgb, SHOT.camera, (), ())
+    assert not level_view(SHOT.inputs.photo.rgb, found, ()).floor_ratio.any()
 
 
 def test_response_reads_the_scaled_map_and_is_neutral_outside() -> None:

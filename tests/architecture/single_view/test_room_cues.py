@@ -45,6 +45,8 @@ def test_cues_of_a_photo_leave_the_furniture_out() -> None:
     found = gather_room_cues(shot.inputs.photo.rgb, camera, shot.objects, shot.cuboids)
     np.testing.assert_allclose(found.object_low, [wardrobe.corners_world.min(axis=0)])
     assert found.hung_top_m == pytest.approx(2.5)
+    assert found.ray_weights.sum() == pytest.approx(1.0)
+    assert len(found.directions) == len(found.ray_axes) == 3 * len(found.segment_rays)
     mask = next(o for o in shot.objects if o.id == "wardrobe").mask
     assert found.map_scale == 1.0
     np.testing.assert_allclose(found.edge_maps[:, mask], EDGE_THRESHOLD)
@@ -74,5 +76,5 @@ def test_a_slanted_wall_gives_its_direction() -> None:
 
 def test_a_blank_picture_has_no_lines() -> None:
     found = gather_room_cues(np.full((240, 320, 3), 128, np.uint8), CAMERA, (), ())
-    assert len(found.segment_rays) == 0
+    assert len(found.directions) == len(found.segment_rays) == 0
     assert found.edge_maps.max() == 0.0

@@ -85,8 +85,7 @@ def test_a_wall_that_is_hardly_seen_gives_way_to_what_stands_before_it():
     deep = cuboid("wardrobe", (0.0, 4.6, 0), (1.5, 2.0, 2.0))
     shot = shoot(look(0, 10), box_room(-2.0, 2.0, 6.0, 2.6), (deep,))
     grey = Photo(np.full((480, 640, 3), 128, np.uint8), "blank", (640, 480))
-    blank = replace(shot.inputs, photo=grey)
-    estimate = PhotoRoom(surfaces=None).reconstruct(blank, shot.objects, shot.geometry, Progress())
+    estimate = reconstruct(replace(shot, inputs=replace(shot.inputs, photo=grey)))
     for wall_found in estimate.architecture.by_role("wall"):
         assert (deep.corners_world @ wall_found.normal).min() > wall_found.offset - 0.05
 

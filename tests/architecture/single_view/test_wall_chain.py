@@ -20,13 +20,12 @@ from diorama_core.architecture.single_view.wall_chain import (
     nearby_walls,
     refine_chain,
 )
-from diorama_core.architecture.texture.colours import object_pixels
-from tests.architecture.single_view.plain_cues import cues, drawn_edges, true_surfaces
+from tests.architecture.single_view.plain_cues import cues, drawn_edges
 from tests.synthetic_rooms import box_room, cuboid, look, shoot
 
 CAMERA = look(20.0, 8.0, fov_deg=75.0, size=(320, 240))
 SHOT = shoot(CAMERA, box_room(-2.0, 2.0, 4.0, 2.6), (cuboid("table", (-0.8, 2.6, 0), (0.8, 1.0, 0.7)),))
-NOTHING = np.zeros((240, 320), bool)
+BLANK = np.full((240, 320, 3), 128, np.uint8)
 
 
 def walls(*rows: tuple[tuple[float, float], float]) -> PhotoWalls:
@@ -42,13 +41,13 @@ LEFT, FAR = ((1.0, 0.0), -2.0), ((0.0, -1.0), -4.0)
 def seen() -> ChainScorer:
     """The scorer of the photographed room."""
     found = gather_room_cues(SHOT.inputs.photo.rgb, CAMERA, SHOT.objects, SHOT.cuboids)
-    return ChainScorer(found, level_view(found, true_surfaces(SHOT), object_pixels((240, 320), SHOT.objects)))
+    return ChainScorer(found, level_view(SHOT.inputs.photo.rgb, found, SHOT.objects))
 
 
 def blank(**given) -> ChainScorer:
     """A scorer that only knows what is given."""
     found = cues(camera=CAMERA, **given)
-    return ChainScorer(found, level_view(found, None, NOTHING))
+    return ChainScorer(found, level_view(BLANK, found, ()))
 
 
 def test_reach_is_the_distance_to_the_wall_in_the_heading() -> None:
@@ -77,18 +76,6 @@ def test_the_true_wall_costs_least_where_it_is_seen() -> None:
     on_far = (scorer.view.middles_rad > np.arctan2(-1.9, 4.0)) & (scorer.view.middles_rad < 0.2)
     assert on_far.sum() > 20
     assert offsets[costs[:, on_far].sum(axis=1).argmin()] == -4.0
-
-
-def test_a_wall_that_is_turned_otherwise_than_it_looks_costs_more() -> None:
-    scorer = seen()
-    assert SETTINGS.search.slant_weight > 0
-    heading = int(np.abs(scorer.view.middles_rad - np.arctan2(0.0, 4.0)).argmin())
-    level = replace(scorer.view, slant=np.zeros_like(scorer.view.slant))
-    turned = replace(scorer.view, slant=np.full_like(scorer.view.slant, 0.7))
-    far, aside = (ChainScorer(scorer.cues, view).costs(walls(FAR), 2.6)[0, heading] for view in (level, turned))
-    most = SETTINGS.search.slant_weight * scorer.view.walls_seen[heading] * SETTINGS.search.slant_cap
-    assert 0.9 * most < aside - far <= most + 1e-9
-    assert scorer.view.slant[heading] == pytest.approx(0.0, abs=0.1), "the far wall is looked at straight"
 
 
 def test_objects_push_walls_away_in_the_headings_of_their_corners() -> None:
@@ -193,7 +180,7 @@ def test_best_ceiling_is_the_rooms_and_above_the_eye() -> None:
     camera = look(0.0, -10.0, fov_deg=75.0, size=(320, 240))
     shot = shoot(camera, box_room(-2.0, 2.0, 4.0, 2.4))
     found = gather_room_cues(shot.inputs.photo.rgb, camera, (), ())
-    scorer = ChainScorer(found, level_view(found, true_surfaces(shot), NOTHING))
+    scorer = ChainScorer(found, level_view(shot.inputs.photo.rgb, found, ()))
     chain = best_chain(scorer, walls(LEFT, FAR, ((-1.0, 0.0), -2.0)), 2.4)
     heights = np.array([1.0, 1.6, 2.0, 2.4, 2.8, 3.4, 9.0])
     assert best_ceiling(scorer, chain, heights) == 2.4
