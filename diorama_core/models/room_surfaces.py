@@ -1,4 +1,4 @@
-"""The room behind its furniture, as a small network sees it: floor, wall and ceiling, and how walls are turned.
+"""The room behind its furniture, as a small network sees it: floor, wall and ceiling.
 
 Maps of EfficientNet-Lite0, which learnt from photos, go through a head of our own that learnt from rendered rooms
 (`diorama_core.training`; `assets/models` has its weights, how they were made and how good they are).
@@ -22,7 +22,6 @@ from diorama_core.models.images import IMAGENET_MEAN, IMAGENET_STD, normalise
 from diorama_core.models.runtime import SHARED_SESSIONS, SessionPool
 from diorama_core.models.store import sha256_of
 from diorama_core.scene.types import Camera
-from diorama_core.scene.values import ArrayValue
 
 log = logging.getLogger(__name__)
 
@@ -31,17 +30,11 @@ SIDE_PX = 512
 CELL_PX = 4
 _COARSEST = 32
 """Both sides of a picture are multiples of the coarsest map's stride."""
-OUTPUTS = ("floor", "wall", "ceiling", "slant")
+OUTPUTS = ("floor", "wall", "ceiling")
 
 
-@dataclass(frozen=True, eq=False)
-class RoomSurfaces(ArrayValue):
-    """What each part of a picture would show of the empty room, the whole picture divided into cells."""
-
-    shares: Float32[np.ndarray, "3 h w"]
-    """Probabilities of floor, wall and ceiling."""
-    slant: Float32[np.ndarray, "h w"]
-    """Of the wall there: sine of the level angle, counter-clockwise, from the way straight into it to the sight."""
+RoomSurfaces = Float32[np.ndarray, "3 hc wc"]
+"""Probabilities of `OUTPUTS` in the empty room, the whole picture divided into cells."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +63,7 @@ class SurfaceReader:
             {**backbone_maps(small, self.pool), "rise": rise[None]},
             {"surfaces": (1, len(OUTPUTS), height // CELL_PX, width // CELL_PX)},
         )["surfaces"][0]
-        return RoomSurfaces(found[:3], found[3])
+        return np.asarray(found, np.float32)
 
 
 def network_size(size: tuple[int, int]) -> tuple[int, int]:

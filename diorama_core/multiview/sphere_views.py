@@ -221,7 +221,7 @@ def sphere_surfaces(level: UInt8[np.ndarray, "h w 3"], reader: SurfaceReader) ->
     k = Intrinsics.from_fov(SIDE_PX, SIDE_PX * 3 // 4, SETTINGS.surface_fov_rad)
     for azimuth, elevation in product(np.arange(8) * np.pi / 4, SETTINGS.surface_elevations_rad):
         axes = level_axes(float(azimuth), elevation)
-        shares = reader.read(perspective(level, axes, k), Camera(k, rigid(axes, np.zeros(3)))).shares
+        shares = reader.read(perspective(level, axes, k), Camera(k, rigid(axes, np.zeros(3))))
         local = towards @ axes
         z = np.where(local[..., 2] > 0.05, local[..., 2], np.inf)
         at = np.stack([k.fx * local[..., 0] / z + k.cx, k.fy * local[..., 1] / z + k.cy], axis=-1)

@@ -48,9 +48,8 @@ class SurfacePicture(ArrayValue):
     rgb: UInt8[np.ndarray, "h w 3"]
     surface: UInt8[np.ndarray, "h2 w2"]
     """Index into `OUTPUTS`; `NONE` where the picture shows no surface."""
-    slant: Float32[np.ndarray, "h2 w2"]
     rise: Float32[np.ndarray, "h2 w2"]
-    """Slant of the walls and sine of the elevation, as `models.room_surfaces` defines them."""
+    """Sine of the elevation of the line of sight."""
 
 
 def make_surfaces(folder: Path, library: ShapeLibrary, seeds: range, progress: Progress = SILENT) -> int:
@@ -85,18 +84,7 @@ def _picture(studio: Studio, planes: tuple[Plane, ...], camera: Camera) -> Surfa
     half = Camera(camera.intrinsics.resize(SIZE[0] // 2, SIZE[1] // 2), camera.T_world_camera)
     shown = studio.empty_room_planes(half)
     surface = np.array([*(OUTPUTS.index(p.role) for p in planes), NONE], np.uint8)[shown]
-    is_wall = surface == OUTPUTS.index("wall")
-    columns, rows = np.meshgrid(np.arange(shown.shape[1]) + 0.5, np.arange(shown.shape[0]) + 0.5)
-    rays = half.rays(np.stack([columns, rows], axis=-1))
-    into = -np.array([*(p.normal[:2] for p in planes), np.zeros(2)])[shown]
-    turned = into[..., 0] * rays[..., 1] - into[..., 1] * rays[..., 0]
-    slant = turned / np.maximum(np.linalg.norm(into, axis=-1) * np.linalg.norm(rays[..., :2], axis=-1), 1e-6)
-    return SurfacePicture(
-        studio.photograph(camera, SIZE)[0],
-        surface,
-        np.where(is_wall, slant, 0.0).astype(np.float32),
-        elevation_sines(half, shown.shape),
-    )
+    return SurfacePicture(studio.photograph(camera, SIZE)[0], surface, elevation_sines(half, shown.shape))
 
 
 def _pack(pictures: tuple[SurfacePicture, ...]) -> bytes:
@@ -106,7 +94,7 @@ def _pack(pictures: tuple[SurfacePicture, ...]) -> bytes:
         if not ok:
             raise ValueError("the picture cannot be encoded")
         arrays |= {f"jpeg_{k}": data.ravel(), f"surface_{k}": picture.surface}
-        arrays |= {f"slant_{k}": picture.slant.astype(np.float16), f"rise_{k}": picture.rise.astype(np.float16)}
+        arrays |= {f"rise_{k}": picture.rise.astype(np.float16)}
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]  # the keywords are names of arrays
     return buffer.getvalue()
@@ -120,7 +108,6 @@ def read_surfaces(path: Path) -> tuple[SurfacePicture, ...]:
             SurfacePicture(
                 decode_picture(saved[f"jpeg_{k}"], path),
                 saved[f"surface_{k}"],
-                saved[f"slant_{k}"].astype(np.float32),
                 saved[f"rise_{k}"].astype(np.float32),
             )
             for k in range(int(saved["count"]))
@@ -154,7 +141,7 @@ class SurfaceFiles:
             pictures = read_surfaces(self.paths[int(rng.integers(len(self.paths)))])
             picture = _crop(pictures[int(rng.integers(len(pictures)))], rng)
             maps = backbone_maps(photograph(picture.rgb, rng))
-            rows.append((*(maps[name][0] for name in MAP_CHANNELS), _cells(picture.rise), _right(picture)))
+            rows.append((*(maps[name][0] for name in MAP_CHANNELS), _cells(picture.rise), _shares(picture)))
         return tuple(torch.from_numpy(np.stack(part).astype(np.float32)) for part in zip(*rows, strict=True))
 
 
@@ -168,7 +155,7 @@ def _crop(picture: SurfacePicture, rng: np.random.Generator) -> SurfacePicture:
         M = np.array([[sx, 0, rng.uniform(width * (1 - sx), 0)], [0, sy, rng.uniform(height * (1 - sy), 0)], [0, 0, 1]])
         picture = _warp(picture, (turn @ M).astype(np.float64))
     if rng.random() < 0.5:
-        parts = (picture.rgb, picture.surface, -picture.slant, picture.rise)
+        parts = (picture.rgb, picture.surface, picture.rise)
         picture = SurfacePicture(*(np.ascontiguousarray(part[:, ::-1]) for part in parts))
     return picture
 
@@ -183,7 +170,6 @@ def _warp(picture: SurfacePicture, M: Float[np.ndarray, "2 3"]) -> SurfacePictur
     return SurfacePicture(
         np.asarray(cv2.warpAffine(picture.rgb, M, SIZE, borderMode=cv2.BORDER_REFLECT_101), np.uint8),
         warp(picture.surface, cv2.INTER_NEAREST, NONE),
-        warp(picture.slant, cv2.INTER_NEAREST, 0.0),
         warp(picture.rise, cv2.INTER_LINEAR, 0.0),
     )
 
@@ -195,15 +181,13 @@ def _cells(of_halves: Float[np.ndarray, "h2 w2 *c"]) -> Float[np.ndarray, "h w *
     return np.asarray(of_halves.reshape(height // by, by, width // by, by, *of_halves.shape[2:]).mean(axis=(1, 3)))
 
 
-def _right(picture: SurfacePicture) -> Float[np.ndarray, "4 h w"]:
-    """Shares of the surfaces in every cell, and the slant of its walls."""
-    shares = _cells(np.eye(NONE + 1)[picture.surface])
-    slant = _cells(picture.slant) / np.maximum(shares[..., 1], 1e-6)
-    return np.stack([*np.moveaxis(shares, -1, 0)[:NONE], slant])
+def _shares(picture: SurfacePicture) -> Float[np.ndarray, "3 h w"]:
+    """Shares of the surfaces in every cell."""
+    return np.moveaxis(_cells(np.eye(NONE + 1)[picture.surface]), -1, 0)[:NONE]
 
 
 class SurfaceHead(nn.Module):
-    """Input: maps of the backbone (`MAP_CHANNELS`) and `rise` [b, h, w]. Output: `OUTPUTS` [b, 4, h, w].
+    """Input: maps of the backbone (`MAP_CHANNELS`) and `rise` [b, h, w]. Output: `OUTPUTS` [b, 3, h, w].
 
     The coarsest map, of which some layers see far and one the whole picture, is made finer map by map.
 
@@ -232,17 +216,16 @@ class SurfaceHead(nn.Module):
         m16: Float[Tensor, "b c16 h4 w4"],
         m32: Float[Tensor, "b c32 h8 w8"],
         rise: Float[Tensor, "b h w"],
-    ) -> Float[Tensor, "b 4 h w"]:
-        """Probabilities, and the slant.
+    ) -> Float[Tensor, "b 3 h w"]:
+        """Probabilities.
 
         Args:
             m4, m8, m16, m32: maps of the backbone by stride.
             rise: sines of the elevations, in cells.
         """
-        logits = self.logits(m4, m8, m16, m32, rise)
-        return torch.cat([torch.softmax(logits[:, :NONE], dim=1), torch.tanh(logits[:, NONE:])], dim=1)
+        return torch.softmax(self.logits(m4, m8, m16, m32, rise), dim=1)
 
-    def logits(self, m4: Tensor, m8: Tensor, m16: Tensor, m32: Tensor, rise: Tensor) -> Float[Tensor, "b 4 h w"]:
+    def logits(self, m4: Tensor, m8: Tensor, m16: Tensor, m32: Tensor, rise: Tensor) -> Float[Tensor, "b 3 h w"]:
         """The outputs before they are probabilities.
 
         Args:
@@ -266,16 +249,14 @@ class SurfaceHead(nn.Module):
         return logits
 
 
-def surface_loss(logits: Float[Tensor, "b 4 h w"], right: Float[Tensor, "b 4 h w"]) -> tuple[Tensor, float]:
-    """Cross-entropy of the surfaces and error of the slants; and the share of surfaces that are right.
+def surface_loss(logits: Float[Tensor, "b 3 h w"], shares: Float[Tensor, "b 3 h w"]) -> tuple[Tensor, float]:
+    """Cross-entropy of the surfaces, and the share of cells that are right.
 
     Args:
         logits: of `SurfaceHead.logits`.
-        right: shares of the surfaces, and slants.
+        shares: true ones.
     """
-    shares, slant = right[:, :NONE], right[:, NONE]
-    known, wall = shares.sum(dim=1), shares[:, 1]
-    surfaces = -(shares * functional.log_softmax(logits[:, :NONE], dim=1)).sum() / known.sum()
-    slants = ((torch.tanh(logits[:, NONE]) - slant).abs() * wall).sum() / wall.sum().clamp(min=1.0)
-    right_share = ((logits[:, :NONE].argmax(dim=1) == shares.argmax(dim=1)) * known).sum() / known.sum()
-    return surfaces + 0.5 * slants, float(right_share.detach())
+    known = shares.sum(dim=1)
+    loss = -(shares * functional.log_softmax(logits, dim=1)).sum() / known.sum()
+    right = ((logits.argmax(dim=1) == shares.argmax(dim=1)) * known).sum() / known.sum()
+    return loss, float(right.detach())

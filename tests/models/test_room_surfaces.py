@@ -59,8 +59,7 @@ def test_a_rendered_room_is_read_behind_its_furniture() -> None:
     rgb, ids = studio.photograph(camera, (256, 192))
     reader = own_surface_reader()
     assert reader is not None
-    found = reader.read(rgb, camera)
-    shares = found.shares
+    shares = reader.read(rgb, camera)
     np.testing.assert_allclose(shares.sum(axis=0), 1.0, atol=1e-4)
     cells = Camera(camera.intrinsics.resize(SIDE_PX // CELL_PX, SIDE_PX * 3 // 4 // CELL_PX), camera.T_world_camera)
     planes = studio.scene.architecture.planes
@@ -71,10 +70,6 @@ def test_a_rendered_room_is_read_behind_its_furniture() -> None:
     assert right.mean() > 0.9
     assert behind.mean() > 0.1
     assert right[behind].mean() > 0.8
-    columns, rows = np.meshgrid(np.arange(shown.shape[1]) + 0.5, np.arange(shown.shape[0]) + 0.5)
-    rays, into = cells.rays(np.stack([columns, rows], axis=-1)), -np.array([p.normal for p in planes])[shown]
-    turned = (into[..., 0] * rays[..., 1] - into[..., 1] * rays[..., 0]) / np.linalg.norm(rays[..., :2], axis=-1)
-    assert np.abs(found.slant - turned)[kind == 1].mean() < 0.25
 
 
 def test_a_missing_head_is_one_line_in_the_log(

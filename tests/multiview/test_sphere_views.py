@@ -90,7 +90,7 @@ class HorizonReader(SurfaceReader):
     def read(self, rgb: np.ndarray, camera: Camera) -> RoomSurfaces:
         rise = elevation_sines(camera, (rgb.shape[0] // CELL_PX, rgb.shape[1] // CELL_PX))
         kinds = np.where(rise < np.sin(-0.3), 0, np.where(rise > np.sin(0.5), 2, 1))
-        return RoomSurfaces(np.moveaxis(np.eye(3, dtype=np.float32)[kinds], -1, 0), np.zeros(kinds.shape, np.float32))
+        return np.moveaxis(np.eye(3, dtype=np.float32)[kinds], -1, 0)
 
 
 def test_what_views_show_of_floor_and_ceiling_is_one_map_all_round() -> None:
