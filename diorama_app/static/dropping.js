@@ -56,9 +56,13 @@
     return [{ path: entry.fullPath.replace(/^\//, ""), file }];
   };
 
-  const send = (file) => {
-    const to = document.getElementById("dio-drop-to"), field = to && document.getElementById(`file_upload_${to.dataset.upload}`);
-    if (!field) return;
+  const uploadField = () => {
+    const to = document.getElementById("dio-drop-to");
+    return to && document.getElementById(`file_upload_${to.dataset.upload}`);
+  };
+  const send = async (file) => {
+    while (!uploadField()) await new Promise((done) => setTimeout(done, 100)); // the panels are still on their way
+    const field = uploadField();
     const one = new DataTransfer();
     one.items.add(file);
     field.files = one.files;

@@ -26,8 +26,13 @@ def drop(editor: EditorPage, *paths: Path) -> None:
     """Drop files or folders on the middle of the page."""
     devtools = editor.page.context.new_cdp_session(editor.page)
     data = {"items": [], "files": [str(p) for p in paths], "dragOperationsMask": 1}
+    veil = editor.page.locator("#dio-drop")
     for what in ("dragEnter", "dragOver", "drop"):
         devtools.send("Input.dispatchDragEvent", {"type": what, "x": 700, "y": 400, "data": data})
+        if what == "dragEnter":  # Chromium forgets a drop on a page that has not yet said that it takes files
+            expect(veil).to_be_visible()
+        editor.settle()
+    expect(veil).to_be_hidden()
     devtools.detach()
 
 

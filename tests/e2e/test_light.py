@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from playwright.sync_api import expect
 
 from diorama_core.project.storage import Project
 from diorama_core.scene.light_settings import PHOTO_LIGHT, LightSettings
@@ -47,11 +48,12 @@ def test_time_direction_lamps_and_exposure_are_seen_undone_saved_and_exported(
     editor.page.wait_for_function(f"!!window.__viserMutable.nodeRefFromName['{lamp}/lamp']")
     slider.fill("9")
     editor.until(lambda: light(editor).hour == 9.0, "morning")
+    expect(editor.page.locator("[data-clock]")).to_have_text("09:00")
+    expect(editor.page.locator("[data-about]")).to_contain_text("above the horizon")
     dial = editor.page.locator("[data-dial]")
-    dial.scroll_into_view_if_needed()
     box = dial.bounding_box()
     assert box is not None
-    editor.page.mouse.click(box["x"] + box["width"] * 0.9, box["y"] + box["height"] / 2)
+    dial.click(position={"x": box["width"] * 0.9, "y": box["height"] / 2})
     editor.until(lambda: abs(_azimuth(editor)) < 0.1, "the sun stands at the right")
     dial.press("ArrowUp")
     editor.until(lambda: abs(_azimuth(editor) - np.radians(5.0)) < 0.1, "turned by a key")
