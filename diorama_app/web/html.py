@@ -146,17 +146,15 @@ class LiveHtml:
         if body == self._body and not again:
             return
         self._body = body
+        self._count += 1  # the page draws only what differs, also from what a hand has put into a field since
+        mark = f"<!--{self._count}-->"
         if self._floating:
             empty = "" if body else 'data-empty="1"'
             out = f'<img alt="" src="data:," style="display:none" onerror="{_FLOAT}">'
             frame = self._frame.replace("<div ", f'<div data-float="{self._floating}" {empty} ', 1)
-            self._handle.content = f"<!--{self._count}-->" + frame.replace("%s", body + out, 1)
+            self._handle.content = mark + frame.replace("%s", body + out, 1)
             self._handle.visible = True
-            self._count += 1
             return
-        if again:
-            self._count += 1  # the page draws only what differs
-        mark = f"<!--{self._count}-->" if self._count else ""
         self._handle.content = mark + self._frame.replace("%s", body, 1) if body else ""
         self._handle.visible = bool(body)
 

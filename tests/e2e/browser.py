@@ -88,6 +88,12 @@ NOTES = """(() => {
 })()"""
 """Notes what a person did to the page and what it sent, for the report of a test that fails."""
 
+HAS_MESH = """(name) => {
+    let has = false;
+    window.__viserMutable.nodeRefFromName[name]?.traverse((o) => { has ||= o.isMesh; });
+    return has;
+}"""
+
 ON_CANVAS = "([x, y]) => (document.elementFromPoint(x, y) || {}).tagName === 'CANVAS'"
 
 
@@ -159,6 +165,15 @@ class EditorPage:
         """Wait until the page has handled every message and drawn two frames since."""
         self.page.evaluate("window.__quietFrom = null")
         self.page.wait_for_function(SETTLED, polling=20)
+
+    def until_drawn(self, object_id: str) -> None:
+        """Wait until the page has an object's present shape, and the camera stands still."""
+        viewport = self.session.viewport
+        self.until(lambda: viewport.mesh_name(object_id) is not None, f"the shape of {object_id} is sent")
+        self.page.wait_for_function(HAS_MESH, arg=viewport.mesh_name(object_id))
+        self.settle()
+        position = self.session.scene.object(object_id).pose.position
+        self.still(lambda: np.round(self.place_of(position), 1).tolist())
 
     def at_board(self) -> None:
         """Wait until the photo is there to draw on."""

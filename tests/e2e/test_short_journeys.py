@@ -86,7 +86,7 @@ def nearest_point(editor: EditorPage, item: SceneObject) -> tuple[float, float]:
 def click_object(hand: Hand, item: SceneObject) -> None:
     """In the view; what something hides is clicked in the list."""
     editor = hand.editor
-    editor.settle()
+    editor.until_drawn(item.id)
     at = nearest_point(editor, item)
     hand.click(at, f"the {item.label} in the view")
     editor.page.wait_for_timeout(400)
@@ -149,9 +149,11 @@ def test_from_a_photo_to_an_exported_room(hand: Hand, tmp_path: Path) -> None:
     page.screenshot(path=str(ARTEFACTS / "journey-built.png"))
     chosen = nearest(session.scene)
     click_object(hand, chosen)
+    shape = session.viewport.mesh_name(chosen.id)
     hand.click(page.locator(".dio .tile:not(.on)[data-do=swap]").first, "another shape")
     editor.until(lambda: session.scene.object(chosen.id).shape_id != chosen.shape_id, "swapped")
-    editor.settle()
+    editor.until(lambda: session.viewport.mesh_name(chosen.id) != shape, "its other shape is sent")
+    editor.until_drawn(chosen.id)
     start = nearest_point(editor, session.scene.object(chosen.id))
     hand.drag(start, (start[0] + 60, start[1] + 25), f"the {chosen.label}")
     editor.until(
