@@ -62,13 +62,6 @@ class SphereRoomSettings:
     jump_cost: float = 12.0
     """Gain that a corner, and a wall that ends before a farther one (three corners), must gain: degrees of a perfect
     edge."""
-    away: tuple[float, float] = (1.5, 0.6)
-    """Distance of the room's border over the camera's height, all round: median, and deviation of the logarithm. A
-    room of 4 m and a camera at 1.4 m have the former; from a corridor to a hall is twice the latter."""
-    headroom: tuple[float, float] = (1.86, 0.2)
-    """Height of the room over the camera's, likewise: 2.6 m over 1.4 m, by `WallSettings` and `HeightScanSettings`."""
-    prior_weight: float = 25.0
-    """Cost of half a squared deviation of either, in degrees of a perfect edge."""
     refining: tuple[float, ...] = (0.04, 0.02, 0.01, 0.005, 0.0025)
     rounds: int = 3
     """Steps of the refinement, in logarithms, and how often each is tried."""
@@ -302,11 +295,6 @@ def _search_walls(edges: _Edges, surfaces: _Surfaces | None) -> tuple[tuple[_Wal
             evidence[:, at, axis] = shifted + floor
             evidence[:, at, axis] -= SETTINGS.before_cost * edges.nearer_than_feet(azimuth, axis, np.exp(distances))
             evidence[away, at, axis] = -np.inf
-        off = np.abs(np.cos(azimuth - axis * QUARTER))[:, None]
-        far = (distances - np.log(off) - np.log(SETTINGS.away[0])) / SETTINGS.away[1]
-        evidence[:, :, axis] -= SETTINGS.prior_weight / 360 * 0.5 * far[:, None] ** 2
-    high = (np.log1p(np.exp(heights * step)) - np.log(SETTINGS.headroom[0])) / SETTINGS.headroom[1]
-    evidence -= (SETTINGS.prior_weight / 360 * 0.5 * high**2)[:, None, None]
     evidence *= 360 / n
     states, height = _best_path(evidence, azimuth)
     return _walls_of(states, azimuth, distances), float(heights[height] * step)
