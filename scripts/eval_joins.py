@@ -74,6 +74,7 @@ def kept(seed: int, count: int, folder: Path | None) -> Iterator[tuple[Room, Roo
     for pair in built_pairs(seed, count):
         pairs.append(pair)
         if path is not None:
+            path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(pickle.dumps(pairs))
         yield pair
 
