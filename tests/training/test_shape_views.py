@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diorama_core.errors import InputError
 from diorama_core.models.images import CROP_SIDE, MARGIN
 from diorama_core.training import shape_views
 from diorama_core.training.shape_views import ShapeViewFiles, ShapeViews, crop_before, make_shape_views, read_shape
@@ -57,11 +56,6 @@ def test_another_shape_may_stand_before_it(tmp_path: Path, monkeypatch: pytest.M
         monkeypatch.setattr(shape_views, "CUT", 0.0)
         covered.append([(crop_before(BLACK, drawn, np.random.default_rng(k))[0] > 128).sum() for k in range(10)])
     assert np.sum(covered[1]) > np.sum(covered[0])
-
-
-def test_a_folder_without_shapes_is_one_clear_line(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="training shapes"):
-        ShapeViewFiles.of(tmp_path)
 
 
 def test_every_shape_is_rendered_once(tmp_path: Path) -> None:
