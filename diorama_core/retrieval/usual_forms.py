@@ -64,7 +64,8 @@ def usual_form_factor(
     if shape.category in _FLAT_KINDS:
         return float((_FLAT[_outline(shape, appearance, settings)] / max(_FLAT.values())) ** settings.says)
     if shape.category == "plant":
-        return float((_PLANTS[_plant(shape)] / max(_PLANTS.values())) ** settings.says)
+        plant = "other" if _OTHER_PLANTS & set(shape.caption.lower().split()) else "leafy"
+        return float((_PLANTS[plant] / max(_PLANTS.values())) ** settings.says)
     row = category(shape.category)
     bases = None if row.base is None else _BASES[row.base]
     tops = _TOPS if shape.category in _TABLES else None
@@ -79,10 +80,6 @@ def usual_form_factor(
     )
     usual = [shares.get(form, settings.rare) / max(shares.values()) for shares, form in of_form if shares is not None]
     return float(np.prod(usual) ** settings.says)
-
-
-def _plant(shape: Shape) -> str:
-    return "other" if _OTHER_PLANTS & set(shape.caption.lower().split()) else "leafy"
 
 
 def _form(
