@@ -62,7 +62,8 @@ def load_known_shapes(
     if missing:
         reliefs_by_key |= _take(library, missing, on_step)
         reliefs_by_key = {_key(s): reliefs_by_key[_key(s)] for s in shapes}
-        _write(path, reliefs_by_key)
+        stored = {"keys": np.array(list(reliefs_by_key)), "reliefs": np.stack(list(reliefs_by_key.values()))}
+        write_arrays(path, stored)
     reliefs = np.stack([reliefs_by_key[_key(s)] for s in shapes])
     return KnownShapes(categories, relief_features(reliefs.astype(np.float32) / 255.0), sizes)
 
@@ -105,7 +106,3 @@ def _read(path: Path) -> dict[str, UInt8[np.ndarray, "3 2 side side"]]:
     if stored is None or len(stored[0]) != len(stored[1]):
         return {}
     return dict(zip(stored[0].tolist(), stored[1], strict=True))
-
-
-def _write(path: Path, reliefs: dict[str, UInt8[np.ndarray, "3 2 side side"]]) -> None:
-    write_arrays(path, {"keys": np.array(list(reliefs)), "reliefs": np.stack(list(reliefs.values()))})
