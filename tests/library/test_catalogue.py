@@ -1,9 +1,8 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import io
-import json
-import struct
 import subprocess
 import sys
 import threading
@@ -16,6 +15,7 @@ import pytest
 import trimesh
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.glb import read_glb
 from diorama_core.library import catalogue, furniture
 from diorama_core.library.catalogue import (
     BuiltInLibrary,
@@ -105,8 +105,7 @@ def test_glb_opens_with_textures_and_normals(library: BuiltInLibrary, shape_id: 
     data = library.glb(shape_id)
     scene = trimesh.load(io.BytesIO(data), file_type="glb")
     assert np.allclose(scene.bounds, library.mesh(shape_id).bounds, atol=1e-4)
-    length = struct.unpack("<I", data[12:16])[0]
-    document = json.loads(data[20 : 20 + length])
+    document, _ = read_glb(data)
     assert "extensionsRequired" not in document
     assert all("NORMAL" in p["attributes"] for mesh in document["meshes"] for p in mesh["primitives"])
     assert all("baseColorTexture" in m["pbrMetallicRoughness"] for m in document["materials"])
@@ -118,8 +117,6 @@ def test_same_bytes_in_another_process(library: BuiltInLibrary, tmp_path: Path) 
         "print(hashlib.sha256(built_in_library(Path(sys.argv[1])).glb('plant-fiddle')).hexdigest())"
     )
     out = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, check=True)
-    import hashlib
-
     assert out.stdout.strip() == hashlib.sha256(library.glb("plant-fiddle")).hexdigest()
 
 
