@@ -40,8 +40,8 @@ DESIGN = next(d for d in furniture.designs() if d.id == "bed-channel-green")
 
 
 @pytest.fixture(scope="module")
-def library(tmp_path_factory: pytest.TempPathFactory) -> BuiltInLibrary:
-    return built_in_library(tmp_path_factory.mktemp("cache"))
+def library() -> BuiltInLibrary:
+    return built_in_library()
 
 
 def in_category(category: str) -> list[Design]:
@@ -187,15 +187,12 @@ def test_a_sofa_has_its_seat_and_a_bed_its_mattress(library: BuiltInLibrary) -> 
     assert any(0.5 < z < 0.68 for z in above_floor(library, "bed-panel-oak"))
 
 
-def test_a_bookcase_has_its_shelves(library: BuiltInLibrary) -> None:
+def test_a_bookcase_has_its_shelves_and_a_closed_cabinet_no_reachable_inside(library: BuiltInLibrary) -> None:
     shape = library.shape("bookshelf-oak-four")
     inside = [s for s in shape.surfaces if s.interior]
     assert len(inside) == 4
     assert all(0.3 < s.clearance_m < 0.4 for s in inside)
     assert sum(not s.interior for s in shape.surfaces) == 1
-
-
-def test_closed_cabinets_have_no_reachable_inside(library: BuiltInLibrary) -> None:
     assert all(not s.interior for s in library.shape("dresser-white-four").surfaces)
 
 
@@ -204,8 +201,7 @@ def test_surfaces_survive_the_cache(tmp_path: Path) -> None:
     assert built_in_library(tmp_path).shape("tv-stand-oak-open") == first
 
 
-def test_records_know_other_names_and_the_faces_that_touch() -> None:
-    library = built_in_library()
+def test_records_know_other_names_and_the_faces_that_touch(library: BuiltInLibrary) -> None:
     by_category = {s.category: s for s in library.shapes()}
     assert "settee" in by_category["sofa"].synonyms or "couch" in by_category["sofa"].synonyms
     assert by_category["clock"].contact_faces[0] == "back"

@@ -181,6 +181,7 @@ BROKEN: dict[str, Callable[[Case, Path], object]] = {
     "cut off": lambda case, p: _cut(small_graphs.constants(p, case.inputs, _numbers(case.outputs))),
     "noise": lambda case, p: _noise(p),
     "empty": lambda case, p: p.touch(),
+    "absent": lambda case, p: None,
     "other inputs": _other_inputs,
     "inputs of other dimensions": _few_dims,
     "other outputs": lambda case, p: small_graphs.constants(p, case.inputs, _numbers({"something": (1, 7)})),

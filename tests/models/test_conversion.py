@@ -266,7 +266,9 @@ def test_gigaposes_scale_network_is_rebuilt_from_a_checkpoint(
         np.testing.assert_allclose(np.stack([template, photo]), expected.numpy(), atol=1e-4)
         pairs = torch.cat([expected[1, :, 8, 7], expected[0, :, 4, 3]])[None]
         scale, turn = regressor.scale_predictor(pairs)[0, 0], regressor.inplane_predictor(pairs)[0]
-    found = facade.turns(template, photo, np.array([[3, 4]]), np.array([[7, 8]]))
+    cells, others = np.array([[3, 4]]), np.array([[7, 8]])
+    found = facade.turns(template, photo, cells, others)
+    assert len(facade.turns(template, photo, cells[:0], others[:0]).scale) == 0
     assert found.scale[0] == pytest.approx(float(scale), abs=1e-4)
     assert found.angle_rad[0] == pytest.approx(float(torch.atan2(turn[1], turn[0])), abs=1e-4)
 

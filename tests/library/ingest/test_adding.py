@@ -225,17 +225,15 @@ def test_a_wrong_guess_is_put_right(folder: Path, library: StoredLibrary) -> Non
     assert "k" in library.source_keys()
 
 
-def test_a_size_is_put_right(folder: Path, library: StoredLibrary) -> None:
+def test_a_size_is_put_right_and_a_correction_that_makes_no_sense_is_refused(
+    folder: Path, library: StoredLibrary
+) -> None:
     added(folder, library)
     before = library.shape("chair")
     library.add(correct(library, "chair", scale=0.5))
     after = library.shape("chair")
     assert np.allclose(after.size_m, np.array(before.size_m) / 2)
     assert np.allclose(after.surfaces[0].height_m, before.surfaces[0].height_m / 2, atol=1e-3)
-
-
-def test_a_correction_that_makes_no_sense_is_refused(folder: Path, library: StoredLibrary) -> None:
-    added(folder, library)
     with pytest.raises(InputError, match="right angles"):
         correct(library, "chair", up="+x", front="-x")
     with pytest.raises(InputError, match="positive factor"):
