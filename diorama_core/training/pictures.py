@@ -19,7 +19,6 @@ from diorama_core.library.form import MEASURED, form_at, value_indices
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.images import box_geometry
 from diorama_core.progress import SILENT, Progress
-from diorama_core.scene.types import SceneObject
 from diorama_core.scene.values import ArrayValue
 from diorama_core.synthesis import sample_cameras
 from diorama_core.synthesis.cameras import CameraRanges
@@ -129,18 +128,14 @@ def _photograph(seed: int, library: ShapeLibrary, names: tuple[str, ...]) -> tup
         return ()
     index = {name: k for k, name in enumerate(names)}
     kinds = np.array([index[o.category] for o in scene.objects], dtype=np.int64)
-    forms = np.array([_form(o, library) for o in scene.objects], np.int8).reshape(-1, len(MEASURED))
+    forms = [value_indices(form_at(library, library.shape(o.shape_id), o.size_m)) for o in scene.objects]
+    forms_of = np.array(forms, np.int8).reshape(-1, len(MEASURED))
     studio, pictures = Studio(scene, library), []
     for camera in cameras:
         rgb, ids = studio.photograph(camera, SIZE)
         boxes, visible, pixels = visible_boxes(ids, len(kinds))
-        pictures.append(LabelledPicture(rgb, boxes, kinds[visible], pixels, forms[visible]))
+        pictures.append(LabelledPicture(rgb, boxes, kinds[visible], pixels, forms_of[visible]))
     return tuple(pictures)
-
-
-def _form(item: SceneObject, library: ShapeLibrary) -> Int8[np.ndarray, "7"]:
-    shape = library.shape(item.shape_id)
-    return value_indices(form_at(library, shape, item.size_m))
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import trimesh
 
 from diorama_core.errors import InputError
 from diorama_core.library import taxonomy
+from diorama_core.library.ingest import known_shapes as known_module
 from diorama_core.library.ingest.frames import GLTF, STL, UNKNOWN, Convention
 from diorama_core.library.ingest.given import Given, axis_name, axis_vector
 from diorama_core.library.ingest.guess import Frame, guess_frame
@@ -145,8 +146,11 @@ def models(shared: Path) -> list[Model]:
 
 
 @pytest.fixture(scope="module")
-def built_in() -> KnownShapes:
-    return load_known_shapes()
+def built_in(tmp_path_factory: pytest.TempPathFactory) -> KnownShapes:
+    """One of each kind, where imports compare with six: reliefs of those take ten seconds."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(known_module, "EACH", 1)
+        return load_known_shapes(tmp_path_factory.mktemp("reliefs"))
 
 
 def shares(models: list[Model], known: KnownShapes, convention: Convention, shuffled: bool) -> tuple[float, ...]:
