@@ -143,10 +143,8 @@ class BuiltInLibrary:
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB, +Z up, metres; the same bytes every time."""
         record = self._find(shape_id)
-        return self._glbs.get(shape_id, lambda: self._glb(record))
-
-    def _glb(self, record: Shape) -> bytes:
-        return derive(self._glb_path(record), lambda: _glb(self.parts(record.id)), whole_glb)
+        path = self._glb_path(record)
+        return self._glbs.get(shape_id, lambda: derive(path, lambda: _glb(self.parts(record.id)), whole_glb))
 
     def is_built(self, shape_id: str) -> bool:
         """Whether the model and the support surfaces of a shape are on disk."""

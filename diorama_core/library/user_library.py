@@ -181,11 +181,9 @@ class ProjectShapes(UserLibrary):
 
     def show(self, folder: Path) -> None:
         """Offer the shapes in a project's folder, where it has any, instead of those of the project before."""
-        project_library = StoredLibrary(folder) if (folder / "library.sqlite").exists() else None
-        self._of_project, self._library = (
-            project_library,
-            self.shared if project_library is None else CombinedLibrary([project_library, self.shared]),
-        )
+        own = StoredLibrary(folder) if (folder / "library.sqlite").exists() else None
+        self._of_project = own
+        self._library = self.shared if own is None else CombinedLibrary([own, self.shared])
 
     def own(self) -> StoredLibrary:
         """Where uploads are kept; see `UserLibrary.own`."""
@@ -197,10 +195,8 @@ class ProjectShapes(UserLibrary):
 
     def offer(self) -> OfferedShapes:
         """What builds and words choose from: neither the project's own shapes nor, unless asked for, uploads."""
-        return OfferedShapes(self, self.shared.offer().left_out | frozenset(s.id for s in self._project_shapes()))
-
-    def _project_shapes(self) -> tuple[Shape, ...]:
-        return () if self._of_project is None else self._of_project.shapes()
+        own = () if self._of_project is None else self._of_project.shapes()
+        return OfferedShapes(self, self.shared.offer().left_out | frozenset(s.id for s in own))
 
 
 class OfferedShapes(LibraryView):

@@ -73,12 +73,9 @@ def usual_form_factor(
     sides = None if closed is None else {"closed": closed, "open": 1.0 - closed}
     if bases is None and tops is None and sides is None:
         return 1.0
-    of_form = zip(
-        (bases, tops, sides),
-        (*_form(library, shape, appearance, settings), _side(shape, appearance, settings)),
-        strict=True,
-    )
-    usual = [shares.get(form, settings.rare) / max(shares.values()) for shares, form in of_form if shares is not None]
+    forms = (*_form(library, shape, appearance, settings), _side(shape, appearance, settings))
+    known = [(shares, form) for shares, form in zip((bases, tops, sides), forms, strict=True) if shares is not None]
+    usual = [shares.get(form, settings.rare) / max(shares.values()) for shares, form in known]
     return float(np.prod(usual) ** settings.says)
 
 

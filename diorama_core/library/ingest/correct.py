@@ -11,7 +11,7 @@ from diorama_core.errors import InputError
 from diorama_core.library import taxonomy
 from diorama_core.library.ingest.given import Given, axis_name, axis_vector
 from diorama_core.library.ingest.relief import relief, symmetry_fold
-from diorama_core.library.ingest.repair import joined
+from diorama_core.library.ingest.repair import whole_of
 from diorama_core.library.ingest.shaping import pack_shape
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.part_notes import transform
@@ -51,7 +51,7 @@ def correct(
     T = np.eye(4)
     T[:3, :3] = R_to_from * scale
     meshes = _turn_parts(library.parts(shape_id), T)
-    whole = joined(meshes)
+    whole = whole_of(meshes)
     name = shape.category if category is None else taxonomy.resolve(category).category.name
     record = replace(
         shape,

@@ -45,7 +45,9 @@ def pack_glb(data: bytes, references: References, limits: Limits) -> bytes:
     """
     document, binary = container(data, limits)
     try:
-        _check_asset(document)
+        version = str(document.get("asset", {}).get("version", ""))
+        if not version.startswith("2"):
+            raise LibraryError(f"glTF version {quote(version)} is not supported; save it as glTF 2.0")
         buffers = [_buffer(row, k, binary, references) for k, row in enumerate(_rows(document, "buffers"))]
         views = [_view(row, buffers, limits) for row in _rows(document, "bufferViews")]
         undo_draco(document, views, limits)
@@ -94,12 +96,6 @@ def _rows(document: Json, name: str) -> list[Json]:
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise LibraryError(f"malformed glTF ('{name}' is no list of objects)")
     return rows
-
-
-def _check_asset(document: Json) -> None:
-    version = str(document.get("asset", {}).get("version", ""))
-    if not version.startswith("2"):
-        raise LibraryError(f"glTF version {quote(version)} is not supported; save it as glTF 2.0")
 
 
 def _buffer(row: Json, number: int, binary: bytes | None, references: References) -> bytes:

@@ -60,7 +60,9 @@ def load_known_shapes(
     reliefs_by_key = _read(path)
     missing = [s for s in shapes if _key(s) not in reliefs_by_key]
     if missing:
-        reliefs_by_key |= _take(library, missing, on_step)
+        for count, shape in enumerate(missing, start=1):
+            reliefs_by_key[_key(shape)] = np.round(relief(library.mesh(shape.id)) * 255).astype(np.uint8)
+            on_step(count / len(missing))
         reliefs_by_key = {_key(s): reliefs_by_key[_key(s)] for s in shapes}
         stored = {"keys": np.array(list(reliefs_by_key)), "reliefs": np.stack(list(reliefs_by_key.values()))}
         write_arrays(path, stored)
@@ -88,16 +90,6 @@ def _spread(shapes: Sequence[Shape]) -> list[Shape]:
         kinds.setdefault(shape.category, []).append(shape)
     rows = (np.linspace(0, len(kind) - 1, min(len(kind), EACH)).round().astype(int) for kind in kinds.values())
     return [kind[row] for kind, some in zip(kinds.values(), rows, strict=True) for row in some]
-
-
-def _take(
-    library: ShapeLibrary, shapes: Sequence[Shape], on_step: Callable[[float], None]
-) -> dict[str, UInt8[np.ndarray, "3 2 side side"]]:
-    reliefs = {}
-    for count, shape in enumerate(shapes, start=1):
-        reliefs[_key(shape)] = np.round(relief(library.mesh(shape.id)) * 255).astype(np.uint8)
-        on_step(count / len(shapes))
-    return reliefs
 
 
 def _read(path: Path) -> dict[str, UInt8[np.ndarray, "3 2 side side"]]:

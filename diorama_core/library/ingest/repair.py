@@ -95,10 +95,10 @@ class Repaired:
     @property
     def whole(self) -> trimesh.Trimesh:
         """Geometry only, one mesh."""
-        return joined(self.meshes)
+        return whole_of(self.meshes)
 
 
-def joined(meshes: Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
+def whole_of(meshes: Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
     """The geometry of several meshes as one."""
     counts = np.cumsum([0, *(len(m.vertices) for m in meshes)])
     faces = np.concatenate([m.faces + c for m, c in zip(meshes, counts, strict=False)])
@@ -142,7 +142,7 @@ def _repair(scene: trimesh.Scene, limits: Limits) -> Repaired:
             meshes.append(made)
     if not meshes:
         raise LibraryError("no triangle with area is in it")
-    whole = joined(meshes)
+    whole = whole_of(meshes)
     if not (whole.extents > 0).any() or np.sort(whole.extents)[1] < 1e-9:
         raise LibraryError("it has no extent")
     thick, was_flat = with_thickness(meshes)
