@@ -111,13 +111,15 @@ def test_glb_opens_with_textures_and_normals(library: BuiltInLibrary, shape_id: 
     assert all("baseColorTexture" in m["pbrMetallicRoughness"] for m in document["materials"])
 
 
-def test_same_bytes_in_another_process(library: BuiltInLibrary, tmp_path: Path) -> None:
+def test_same_keys_and_bytes_in_another_process(library: BuiltInLibrary, tmp_path: Path) -> None:
     code = (
         "import sys, hashlib; from pathlib import Path; from diorama_core.library.catalogue import built_in_library;"
-        "print(hashlib.sha256(built_in_library(Path(sys.argv[1])).glb('plant-fiddle')).hexdigest())"
+        "library = built_in_library(Path(sys.argv[1]));"
+        "print(hashlib.sha256(library.glb('plant-fiddle')).hexdigest(), *(s.content_hash for s in library.shapes()))"
     )
-    out = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, check=True)
-    assert out.stdout.strip() == hashlib.sha256(library.glb("plant-fiddle")).hexdigest()
+    out = subprocess.run([sys.executable, "-OO", "-c", code, str(tmp_path)], capture_output=True, text=True, check=True)
+    here = hashlib.sha256(library.glb("plant-fiddle")).hexdigest()
+    assert out.stdout.split() == [here, *(s.content_hash for s in library.shapes())]
 
 
 @pytest.mark.unchecked
