@@ -12,7 +12,6 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from pickle import PicklingError
 
-import numpy as np
 import platformdirs
 import trimesh
 from PIL import Image
@@ -30,7 +29,7 @@ from diorama_core.library.furniture.measures import MARK, is_made, made_by_id
 from diorama_core.library.furniture.model import Design, mesh_of, scene_of
 from diorama_core.library.furniture.roles import with_roles
 from diorama_core.library.furniture.solids import Solid
-from diorama_core.library.record import Shape, SupportSurface, usual_contact_faces
+from diorama_core.library.record import Shape, SupportSurface, surface_from, surface_row, usual_contact_faces
 from diorama_core.library.surfaces import SURFACES_VERSION, support_surfaces
 from diorama_core.library.taxonomy import carries_things, column
 
@@ -144,10 +143,8 @@ class BuiltInLibrary:
     def glb(self, shape_id: str) -> bytes:
         """`parts` as GLB, +Z up, metres; the same bytes every time."""
         record = self._find(shape_id)
-        return self._glbs.get(shape_id, lambda: self._glb(record))
-
-    def _glb(self, record: Shape) -> bytes:
-        return derive(self._glb_path(record), lambda: _glb(self.parts(record.id)), whole_glb)
+        path = self._glb_path(record)
+        return self._glbs.get(shape_id, lambda: derive(path, lambda: _glb(self.parts(record.id)), whole_glb))
 
     def is_built(self, shape_id: str) -> bool:
         """Whether the model and the support surfaces of a shape are on disk."""
@@ -184,8 +181,8 @@ class BuiltInLibrary:
 
     def _measure(self, record: Shape) -> tuple[SupportSurface, ...]:
         def measure() -> bytes:
-            carries = carries_things(record.category)
-            return _surfaces_to_json(support_surfaces(self.mesh(record.id), carries=carries))
+            surfaces = support_surfaces(self.mesh(record.id), carries=carries_things(record.category))
+            return json.dumps([surface_row(s, decimals=5) for s in surfaces]).encode()
 
         return derive(self._surfaces_path(record), measure, _surfaces_from_json)
 
@@ -224,27 +221,8 @@ def _glb(scene: trimesh.Scene) -> bytes:
     return data
 
 
-def _surfaces_to_json(surfaces: tuple[SupportSurface, ...]) -> bytes:
-    rows = [
-        {
-            "polygon": np.round(s.polygon, 5).tolist(),
-            "clearance_m": s.clearance_m if np.isfinite(s.clearance_m) else None,
-            "interior": s.interior,
-        }
-        for s in surfaces
-    ]
-    return json.dumps(rows).encode()
-
-
 def _surfaces_from_json(data: bytes) -> tuple[SupportSurface, ...]:
-    return tuple(
-        SupportSurface(
-            np.array(row["polygon"]),
-            np.inf if row["clearance_m"] is None else float(row["clearance_m"]),
-            bool(row["interior"]),
-        )
-        for row in parse_json(data, "support surfaces", LibraryError)
-    )
+    return tuple(map(surface_from, parse_json(data, "support surfaces", LibraryError)))
 
 
 def scene_with_pictures(solids: Iterable[tuple[Material, Solid]], folder: Path) -> trimesh.Scene:

@@ -73,26 +73,26 @@ def understand(text: str, size_m: Size | None = None) -> TextQuery:
     exact = True
     for phrase in _phrases(rest):
         words = tokens(phrase)
-        near_kind = _find_name(words)
-        if near_kind is None:
-            near = _nearest(words, size)
-            exact = exact and near is None
-            notes += [near.note] if near else []
-            near_kind = None if near is None or not near.category else (near.category, near.words)
-        if near_kind is not None:
-            named[near_kind[0]] = None
-            naming.append(near_kind[1][-1])
+        found = _find_name(words) or _nearest(words, size)
+        if found is not None and found.note:
+            exact = False
+            notes.append(found.note)
+        if found is not None and found.category:
+            named[found.category] = None
+            naming.append(found.words[-1])
     silent = IGNORED | JOINTS | _CONJUNCTIONS
     described = dict.fromkeys(w for w in tokens(rest) if w not in silent and w not in naming)
     return TextQuery(tuple(named), exact, tuple(described), tuple(dict.fromkeys(naming)), size, "; ".join(notes))
 
 
 @dataclass(frozen=True)
-class _Near:
+class _Found:
     category: str
     """Empty when nothing is near."""
     words: tuple[str, ...]
-    note: str
+    """That name it."""
+    note: str = ""
+    """Message about words that only are near a name."""
 
 
 def _phrases(text: str) -> list[str]:
@@ -100,19 +100,19 @@ def _phrases(text: str) -> list[str]:
     return [part for part in re.split(r"[,;/&+]|\band\b|\bor\b|\bplus\b", text.lower()) if tokens(part)]
 
 
-def _find_name(words: Sequence[str]) -> tuple[str, tuple[str, ...]] | None:
-    """The category that a phrase names and the words that do: the last known name before "with", "for"..."""
+def _find_name(words: Sequence[str]) -> _Found | None:
+    """The category that a phrase names: the last known name before "with", "for"..."""
     table = _names()
     across = [w for w in _runs(words, len(words)) if w in table and JOINTS & set(w)]
     if across:
-        return table[across[0]], across[0]
+        return _Found(table[across[0]], across[0])
     head = _head(words)
     for end in range(len(head), 0, -1):
         for start in range(max(end - _LONGEST_NAME, 0), end):
             run = tuple(head[start:end])
             name = run if run in table else ("".join(run),)  # "arm chair"
             if name in table:
-                return table[name], run
+                return _Found(table[name], run)
     if "of" in words:  # "a pair of lamps", "set of chairs"
         return _find_name(words[list(words).index("of") + 1 :])
     return None
@@ -131,7 +131,7 @@ def _runs(words: Sequence[str], end: int) -> Iterator[tuple[str, ...]]:
             yield tuple(words[start : start + length])
 
 
-def _nearest(words: Sequence[str], size: Size | None) -> _Near | None:
+def _nearest(words: Sequence[str], size: Size | None) -> _Found | None:
     """The category nearest to a phrase that names none; None for one that has no noun to be near to."""
     head = _head(words) or [w for w in words if w not in IGNORED and w not in JOINTS]
     if not head:
@@ -139,19 +139,19 @@ def _nearest(words: Sequence[str], size: Size | None) -> _Near | None:
     table, near = _names(), other_names()
     for run in sorted(_runs(head, len(head)), key=lambda run: (-len(run), run != tuple(head[-len(run) :]))):
         if run in near:
-            return _Near(near[run], run, f"'{' '.join(run)}' is no class of its own; the nearest is '{near[run]}'")
+            return _Found(near[run], run, f"'{' '.join(run)}' is no class of its own; the nearest is '{near[run]}'")
     for word in reversed(head):
         slip = _closest(word, _SLIP) if len(word) > 3 else None
         if slip is not None:
-            return _Near(table[slip], (word,), f"'{word}' is not known; read as '{' '.join(slip)}' ({table[slip]})")
+            return _Found(table[slip], (word,), f"'{word}' is not known; read as '{' '.join(slip)}' ({table[slip]})")
         ending = _ending(word)
         if ending is not None:
-            return _Near(table[ending], (word,), f"'{word}' is not known; taken for a kind of '{table[ending]}'")
+            return _Found(table[ending], (word,), f"'{word}' is not known; taken for a kind of '{table[ending]}'")
     noun = head[-1]
     if size is not None:
         category = _likeliest_category(noun, size)
-        return _Near(category, (noun,), f"'{noun}' is not known; by its name and size the nearest is '{category}'")
-    return _Near(
+        return _Found(category, (noun,), f"'{noun}' is not known; by its name and size the nearest is '{category}'")
+    return _Found(
         "", (), f"'{noun}' is not known, and no class has a name or use like it; only its words are looked for"
     )
 

@@ -9,6 +9,7 @@ from PIL import Image
 from trimesh.visual.material import PBRMaterial
 
 from diorama_core.io.srgb import srgb_to_linear
+from diorama_core.library.slots import PLAIN, material_key
 from diorama_core.scene.types import Finish
 
 Colour = tuple[float, float, float]
@@ -34,9 +35,9 @@ def repaint(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None =
     main = _main_material(scene)
     new: PBRMaterial | None = None
     for mesh in scene.geometry.values():
-        if _material_key(mesh) != main or main is None:
+        if material_key(mesh) != main or main is None:
             continue
-        if main == _PLAIN:
+        if main == PLAIN:
             mesh.visual = trimesh.visual.TextureVisuals(material=_override(physically_based(mesh), colour, finish))
             continue
         new = new or _override(physically_based(mesh), colour, finish)
@@ -47,7 +48,7 @@ def repaint(parts: trimesh.Scene, colour: Colour | None, finish: Finish | None =
 def main_rgb(parts: trimesh.Scene) -> tuple[int, int, int]:
     """The sRGB colour (0 to 255) of a shape's main material; grey where it has none."""
     main = _main_material(parts)
-    meshes = (m for m in parts.geometry.values() if isinstance(m, trimesh.Trimesh) and _material_key(m) == main)
+    meshes = (m for m in parts.geometry.values() if isinstance(m, trimesh.Trimesh) and material_key(m) == main)
     # Its module loads Open3D, which a page without painted shapes does without.
     from diorama_core.geometry.shape_appearance import material_rgb
 
@@ -57,21 +58,11 @@ def main_rgb(parts: trimesh.Scene) -> tuple[int, int, int]:
     )
 
 
-_PLAIN = "vertex or face colours"
-
-
-def _material_key(mesh: trimesh.Trimesh) -> str:
-    material = getattr(mesh.visual, "material", None)
-    if material is None:
-        return _PLAIN
-    return str(material.name or hash(material))
-
-
 def _main_material(scene: trimesh.Scene) -> str | None:
     areas: dict[str, float] = {}
     for mesh in scene.geometry.values():
         if isinstance(mesh, trimesh.Trimesh):
-            key = _material_key(mesh)
+            key = material_key(mesh)
             areas[key] = areas.get(key, 0.0) + float(mesh.area)
     return max(areas, key=areas.__getitem__, default=None)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any, Literal, Protocol, cast, runtime_checkable
+from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
 import trimesh
@@ -126,6 +126,48 @@ class ShapeLibrary(Protocol):
         ...
 
 
+class LibraryView:
+    """Hands what is asked of a shape on to the library that has it. Implements `ShapeLibrary`."""
+
+    _library: ShapeLibrary
+
+    def __repr__(self) -> str:
+        return repr(self._library)
+
+    def _library_of(self, shape_id: str) -> ShapeLibrary:
+        return self._library
+
+    def shapes(self) -> tuple[Shape, ...]:
+        """All records, in a stable order, without support surfaces."""
+        return self._library.shapes()
+
+    def in_category(self, category: str) -> tuple[Shape, ...]:
+        """Records of one canonical category, without support surfaces."""
+        return self._library.in_category(category)
+
+    def shape(self, shape_id: str) -> Shape:
+        """One record with its support surfaces; raises `LibraryError` when unknown."""
+        return self._library_of(shape_id).shape(shape_id)
+
+    def mesh(self, shape_id: str) -> trimesh.Trimesh:
+        """Geometry only, one mesh in the canonical frame. Shared: do not change it."""
+        return self._library_of(shape_id).mesh(shape_id)
+
+    def parts(self, shape_id: str) -> trimesh.Scene:
+        """Geometry with materials, in the canonical frame. Shared: do not change it."""
+        return self._library_of(shape_id).parts(shape_id)
+
+    def glb(self, shape_id: str) -> bytes:
+        """`parts` as GLB, +Z up, metres."""
+        return self._library_of(shape_id).glb(shape_id)
+
+
+def picture_of(library: ShapeLibrary, shape_id: str) -> bytes | None:
+    """The picture that came with a shape, where its library keeps one."""
+    thumbnail = getattr(library, "thumbnail", None)
+    return None if thumbnail is None else thumbnail(shape_id)
+
+
 def usual_contact_faces(mount: str) -> tuple[FaceName, ...]:
     """Faces that touch a supporter, the usual one first, for where a category is found (`taxonomy.Mount`)."""
     if mount == "wall":
@@ -136,14 +178,7 @@ def usual_contact_faces(mount: str) -> tuple[FaceName, ...]:
 def shape_to_json(shape: Shape) -> str:
     """The whole record, surfaces included, as one line of JSON; `shape_from_json` gives it back unchanged."""
     row = {name: value for name, value in vars(shape).items() if name not in ("surfaces", "guess")}
-    row["surfaces"] = [
-        {
-            "polygon": s.polygon.tolist(),
-            "clearance_m": s.clearance_m if np.isfinite(s.clearance_m) else None,
-            "interior": s.interior,
-        }
-        for s in shape.surfaces
-    ]
+    row["surfaces"] = [surface_row(s) for s in shape.surfaces]
     row["guess"] = None if shape.guess is None else asdict(shape.guess)
     return json.dumps(row, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
 
@@ -160,20 +195,25 @@ def shape_from_json(text: str) -> Shape:
     try:
         row = parse_json(text, "a shape record", LibraryError, advice=_ADVICE)
         row |= {name: tuple(row[name]) for name in ("size_m", "synonyms", "contact_faces")}
-        row["surfaces"] = tuple(_surface_from(s) for s in row["surfaces"])
-        row["guess"] = None if row["guess"] is None else _guess_from(row["guess"])
+        row["surfaces"] = tuple(map(surface_from, row["surfaces"]))
+        if row["guess"] is not None:
+            row["guess"] = Guess(**{name: Assumption(**value) for name, value in row["guess"].items()})
         return Shape(**row)
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise LibraryError(f"a shape record cannot be read ({shorten(str(error))}); {_ADVICE}") from error
 
 
-def _surface_from(row: Mapping[str, Any]) -> SupportSurface:
+def surface_row(surface: SupportSurface, decimals: int | None = None) -> dict[str, Any]:
+    """A support surface as an object of JSON, its corners rounded where that is asked; `surface_from` reads it."""
+    corners = surface.polygon if decimals is None else np.round(surface.polygon, decimals)
+    clearance = surface.clearance_m if np.isfinite(surface.clearance_m) else None
+    return {"polygon": corners.tolist(), "clearance_m": clearance, "interior": surface.interior}
+
+
+def surface_from(row: Mapping[str, Any]) -> SupportSurface:
+    """The support surface of such an object."""
     clearance = row["clearance_m"]
     return SupportSurface(np.array(row["polygon"]), np.inf if clearance is None else clearance, row["interior"])
-
-
-def _guess_from(row: Mapping[str, Any]) -> Guess:
-    return Guess(**{name: Assumption(**cast("dict[str, Any]", value)) for name, value in row.items()})
 
 
 def record_of(library: ShapeLibrary, shape_id: str) -> Shape:

@@ -58,6 +58,7 @@ BESIDE_DESCRIPTION = 0.3
 """Share that counts of a word that tells a use and no look."""
 LIMIT_POINTS = 2.5
 """Lost by a shape that is larger or smaller than asked: what fits comes first."""
+NOWHERE: Int[np.ndarray, "0"] = np.zeros(0, int)
 _SPELLING_CUTOFF = 0.8
 _MIN_SIZE_M = 0.01
 _FILE = Path(__file__).with_name("definitions.txt")
@@ -168,13 +169,13 @@ class TextIndex:
         category = np.zeros(len(self.shapes))
         for name in query.categories:
             for kin in _kin(name):
-                places = self._category_rows(kin)
+                places = self._categories.get(kin, NOWHERE)
                 category[places] = np.maximum(category[places], CATEGORY_POINTS if kin == name else KIN_POINTS)
         if described and not named:
             category *= 0.5  # a name that is only near beside a use that is told
         total = category.copy()
         for kind, share in described.items():
-            places = self._category_rows(kind)
+            places = self._categories.get(kind, NOWHERE)
             places = places[category[places] > 0] if named else places
             total[places] += (0.5 if named else 1.0) * DESCRIPTION_POINTS * share
         sizes: list[SizeRequest] = []
@@ -200,25 +201,19 @@ class TextIndex:
         """Whether any shape has the word, in its normal form, or one of its meaning."""
         return any(w in self._words for w in (word, *narrower(word)))
 
-    def _category_rows(self, name: str) -> Int[np.ndarray, "m"]:
-        return self._categories.get(name, np.zeros(0, int))
-
     def _word(self, word: str, slips: bool = True) -> Float[np.ndarray, "n"]:
         """1 where the word is, less where something of its meaning or spelling is."""
         points = np.zeros(len(self.shapes))
         for general in broader(word):
-            points[self._places(general)] = GENERAL_POINTS
+            points[self._words.get(general, NOWHERE)] = GENERAL_POINTS
         for kind in narrower(word):
-            points[self._places(kind)] = CONCEPT_POINTS
-        points[self._places(word)] = 1.0
+            points[self._words.get(kind, NOWHERE)] = CONCEPT_POINTS
+        points[self._words.get(word, NOWHERE)] = 1.0
         if slips and not points.any() and len(word) > 3:
             alike = [w for w in self._words if w[0] == word[0] and abs(len(w) - len(word)) < 3]
             for near in difflib.get_close_matches(word, alike, n=1, cutoff=_SPELLING_CUTOFF):
-                points[self._places(near)] = SPELLING_POINTS
+                points[self._words.get(near, NOWHERE)] = SPELLING_POINTS
         return points
-
-    def _places(self, word: str) -> Int[np.ndarray, "m"]:
-        return self._words.get(word, np.zeros(0, int))
 
     @cached_property
     def _log_sizes(self) -> Float[np.ndarray, "n 3"]:

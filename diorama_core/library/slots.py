@@ -22,6 +22,7 @@ Role = Literal[
     "fabric", "leather", "wood", "metal", "stone", "paint", "glass", "wicker", "paper", "leaf",
     "picture", "screen", "pane", "dial", "mirror", "material",
 ]  # fmt: skip
+PLAIN = "vertex or face colours"
 ROLE, TILE_M = "_role", "_tile_m"
 """Keys of a mesh's metadata, internal to the program: files do not carry them."""
 WORDS: Mapping[Role, str] = {
@@ -88,7 +89,7 @@ def slots_of(parts: trimesh.Scene) -> tuple[Slot, ...]:
     grouped: dict[str, list[str]] = {}
     for name, mesh in parts.geometry.items():
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
-            grouped.setdefault(_material_key(mesh), []).append(str(name))
+            grouped.setdefault(material_key(mesh), []).append(str(name))
     areas = {key: sum(float(parts.geometry[n].area) for n in names) for key, names in grouped.items()}
     slots: list[Slot] = []
     ranks: dict[str, int] = {}
@@ -180,8 +181,9 @@ def _role(slot_name: str) -> str:
     return slot_name.rstrip("0123456789 ")
 
 
-def _material_key(mesh: trimesh.Trimesh) -> str:
+def material_key(mesh: trimesh.Trimesh) -> str:
+    """Tells a mesh's material from others; `PLAIN` where it only has colours."""
     material = getattr(mesh.visual, "material", None)
     if material is None:
-        return "vertex or face colours"
+        return PLAIN
     return str(material.name or hash(material))

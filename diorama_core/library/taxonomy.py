@@ -58,7 +58,8 @@ def _singulars(key: str) -> tuple[str, ...]:
 
 
 @cache
-def _words() -> dict[str, Category]:
+def categories_by_word() -> Mapping[str, Category]:
+    """By name and synonym, in small letters, with blanks for all that is no letter or digit."""
     table = {_key(c.name): c for c in CATEGORIES}
     for category in CATEGORIES:
         for word in category.synonyms:
@@ -68,7 +69,7 @@ def _words() -> dict[str, Category]:
 
 def category(name: str) -> Category:
     """The category with this canonical name; raises `KeyError` when there is none."""
-    known = _words().get(_key(name))
+    known = categories_by_word().get(_key(name))
     if known is None or known.name != name:
         raise KeyError(name)
     return known
@@ -156,7 +157,7 @@ def resolve(word: str) -> Resolution:
     Exact names, synonyms and plurals first; then the last words of a phrase ("wooden armchair"); then the nearest
     spelling, with a note; at last the category "object".
     """
-    table = _words()
+    table = categories_by_word()
     key = _key(word)
     parts = key.split()
     for start in range(len(parts)):

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 
@@ -35,16 +34,6 @@ _OFF_CENTRE = (0.4731, 0.5397)
 """Place in a line's cell: lines through its middle would often meet edges and diagonals, which two triangles share."""
 _EDGE_ON = 1e-9
 _CHUNK = 2_000_000
-
-
-@dataclass(frozen=True, eq=False)
-class _Crossings:
-    """Where lines pass through a surface, ordered by line and then along the axis."""
-
-    line: Int[np.ndarray, "n"]
-    at: Float[np.ndarray, "n"]
-    enters: Int[np.ndarray, "n"]
-    """1 into matter, -1 out of it."""
 
 
 def derive_thin_matter(
@@ -89,8 +78,7 @@ def thin_matter(
     """
     low, high = vertices[:, axis].min(), vertices[:, axis].max()
     extent = float(high - low)
-    crossings = _crossings(vertices, faces, axis)
-    starts, ends = _runs(crossings)
+    starts, ends = _runs(*_crossings(vertices, faces, axis))
     length = (ends - starts) / extent
     weight = np.clip((SURELY_THICK - length) / (SURELY_THICK - SURELY_THIN), 0.0, 1.0)
     first = np.floor((starts - low) / extent * BINS + 1e-6).astype(int).clip(0, BINS - 1)
@@ -100,7 +88,10 @@ def thin_matter(
     return np.clip(mass / ENOUGH, 0.0, 1.0) * (LEAST + (1.0 - LEAST) * (mass / max(float(mass.max()), ENOUGH)) ** 2)
 
 
-def _crossings(vertices: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"], axis: int) -> _Crossings:
+def _crossings(
+    vertices: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"], axis: int
+) -> tuple[Int[np.ndarray, " c"], Float[np.ndarray, " c"], Int[np.ndarray, " c"]]:
+    """Where lines pass through a surface: line, place along the axis, and 1 into matter or -1 out of it; in order."""
     across = [a for a in range(3) if a != axis]
     low = vertices[:, across].min(axis=0)
     cell = np.maximum(np.ptp(vertices[:, across], axis=0), 1e-9) / LINES
@@ -124,12 +115,12 @@ def _crossings(vertices: Float[np.ndarray, "n 3"], faces: Int[np.ndarray, "m 3"]
     forward = -1 if axis != 1 else 1
     line, at = np.concatenate(lines), np.concatenate(places)
     if not len(line):
-        return _Crossings(line, at, line)
+        return line, at, line
     enters = forward * np.concatenate(signs)
     if float(enters @ (at - at.mean())) > 0:  # a shape that is inside out: it leaves matter before it enters
         enters = -enters
     order = np.lexsort((-enters, np.round(at, 7), line))
-    return _Crossings(line[order], at[order], enters[order])
+    return line[order], at[order], enters[order]
 
 
 def _cells_of(
@@ -148,13 +139,14 @@ def _cells_of(
         yield triangle, first[triangle, 0] + position % wide, first[triangle, 1] + position // wide
 
 
-def _runs(crossings: _Crossings) -> tuple[Float[np.ndarray, " r"], Float[np.ndarray, " r"]]:
+def _runs(
+    line: Int[np.ndarray, " n"], at: Float[np.ndarray, " n"], enters: Int[np.ndarray, " n"]
+) -> tuple[Float[np.ndarray, " r"], Float[np.ndarray, " r"]]:
     """Where lines enter matter and where they leave it again.
 
     On lines that enter as often as they leave, what touches or overlaps is one; surfaces that do not close only tell of
     matter where a way in is followed by a way out.
     """
-    line, at, enters = crossings.line, crossings.at, crossings.enters
     if not len(line):
         return np.zeros(0), np.zeros(0)
     first = np.flatnonzero(np.concatenate([[True], line[1:] != line[:-1]]))

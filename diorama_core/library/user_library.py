@@ -12,7 +12,6 @@ from dataclasses import asdict, dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 
-import trimesh
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from diorama_core.errors import LibraryError
@@ -20,7 +19,7 @@ from diorama_core.io.atomic import write_json
 from diorama_core.io.bounded import read_bytes, shorten
 from diorama_core.io.text import clean_text
 from diorama_core.library.catalogue import base_id
-from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.record import LibraryView, Shape, ShapeLibrary, picture_of
 from diorama_core.library.store import (
     CombinedLibrary,
     StoredLibrary,
@@ -119,7 +118,7 @@ ORDER = "own-models.json"
 """Beside that library's shapes: what their owner says of them."""
 
 
-class UserLibrary:
+class UserLibrary(LibraryView):
     """A `ShapeLibrary` that can grow while everything holds on to it."""
 
     def __init__(self, library: ShapeLibrary) -> None:
@@ -129,9 +128,6 @@ class UserLibrary:
         self._combined = OWN in list_libraries()
         if self._combined:
             self._library = CombinedLibrary([library, open_library(OWN)])
-
-    def __repr__(self) -> str:
-        return repr(self._library)
 
     def __reduce__(self) -> tuple[Callable[[ShapeLibrary], ShapeLibrary], tuple[ShapeLibrary]]:
         """Other processes get what it holds now; it does not grow there."""
@@ -170,34 +166,9 @@ class UserLibrary:
         ids = models.deleted if models.in_builds else (s.id for s in self.uploads())
         return OfferedShapes(self, frozenset(ids))
 
-    def shapes(self) -> tuple[Shape, ...]:
-        """All records, in a stable order."""
-        return self._library.shapes()
-
-    def shape(self, shape_id: str) -> Shape:
-        """One record with its support surfaces."""
-        return self._library.shape(shape_id)
-
-    def in_category(self, category: str) -> tuple[Shape, ...]:
-        """Records of one canonical category."""
-        return self._library.in_category(category)
-
-    def mesh(self, shape_id: str) -> trimesh.Trimesh:
-        """Geometry only."""
-        return self._library.mesh(shape_id)
-
-    def parts(self, shape_id: str) -> trimesh.Scene:
-        """Geometry with materials."""
-        return self._library.parts(shape_id)
-
-    def glb(self, shape_id: str) -> bytes:
-        """`parts` as GLB."""
-        return self._library.glb(shape_id)
-
     def thumbnail(self, shape_id: str) -> bytes | None:
         """The picture that came with the shape, where its library keeps one."""
-        thumbnail = getattr(self._library, "thumbnail", None)
-        return None if thumbnail is None else thumbnail(shape_id)
+        return picture_of(self._library, shape_id)
 
 
 class ProjectShapes(UserLibrary):
@@ -210,11 +181,9 @@ class ProjectShapes(UserLibrary):
 
     def show(self, folder: Path) -> None:
         """Offer the shapes in a project's folder, where it has any, instead of those of the project before."""
-        project_library = StoredLibrary(folder) if (folder / "library.sqlite").exists() else None
-        self._of_project, self._library = (
-            project_library,
-            self.shared if project_library is None else CombinedLibrary([project_library, self.shared]),
-        )
+        own = StoredLibrary(folder) if (folder / "library.sqlite").exists() else None
+        self._of_project = own
+        self._library = self.shared if own is None else CombinedLibrary([own, self.shared])
 
     def own(self) -> StoredLibrary:
         """Where uploads are kept; see `UserLibrary.own`."""
@@ -226,21 +195,16 @@ class ProjectShapes(UserLibrary):
 
     def offer(self) -> OfferedShapes:
         """What builds and words choose from: neither the project's own shapes nor, unless asked for, uploads."""
-        return OfferedShapes(self, self.shared.offer().left_out | frozenset(s.id for s in self._project_shapes()))
-
-    def _project_shapes(self) -> tuple[Shape, ...]:
-        return () if self._of_project is None else self._of_project.shapes()
+        own = () if self._of_project is None else self._of_project.shapes()
+        return OfferedShapes(self, self.shared.offer().left_out | frozenset(s.id for s in own))
 
 
-class OfferedShapes:
+class OfferedShapes(LibraryView):
     """A library whose lists leave some shapes out; those are found by their ids all the same. A `ShapeLibrary`."""
 
     def __init__(self, library: ShapeLibrary, left_out: frozenset[str]) -> None:
         self._library = library
         self.left_out = left_out
-
-    def __repr__(self) -> str:
-        return repr(self._library)
 
     def shapes(self) -> tuple[Shape, ...]:
         """The records that are offered, in a stable order."""
@@ -249,22 +213,6 @@ class OfferedShapes:
     def in_category(self, category: str) -> tuple[Shape, ...]:
         """The records of one canonical category that are offered."""
         return tuple(s for s in self._library.in_category(category) if s.id not in self.left_out)
-
-    def shape(self, shape_id: str) -> Shape:
-        """Any record with its support surfaces."""
-        return self._library.shape(shape_id)
-
-    def mesh(self, shape_id: str) -> trimesh.Trimesh:
-        """Geometry only."""
-        return self._library.mesh(shape_id)
-
-    def parts(self, shape_id: str) -> trimesh.Scene:
-        """Geometry with materials."""
-        return self._library.parts(shape_id)
-
-    def glb(self, shape_id: str) -> bytes:
-        """`parts` as GLB."""
-        return self._library.glb(shape_id)
 
 
 def offer_shapes(library: ShapeLibrary) -> ShapeLibrary:

@@ -195,24 +195,17 @@ def lying_likelihoods(
         carrier_kinds: that this may be of.
         height: how likely every camera height of `box_views.HEIGHTS_M` is, adding up to 1.
     """
-    distances = np.stack([_distances(view, carrier, category(kind), height) for kind in carrier_kinds], axis=1)
-    return _sizes(view, kinds) @ distances + SETTINGS.certain
-
-
-def _sizes(view: BoxView, kinds: Sequence[str]) -> Float[np.ndarray, "k d"]:
     entries = [category(kind) for kind in kinds]
-    return np.stack([np.mean([size_density(view, p, e.mount) for p in e.priors], axis=0) for e in entries])
-
-
-def _distances(
-    view: BoxView, carrier: BoxView, entry: Category, height: Float[np.ndarray, "h"]
-) -> Float[np.ndarray, "d"]:
-    """How likely what lies on a carrier of one kind is at every distance, times how well its foot is level with it."""
-    priors = [_lying_likelihood(view, carrier, entry, prior) for prior in entry.priors]
-    return np.asarray(height @ np.mean(priors, axis=0))
+    sizes = np.stack([np.mean([size_density(view, p, e.mount) for p in e.priors], axis=0) for e in entries])
+    distances = []
+    for entry in map(category, carrier_kinds):
+        of_modes = [_lying_likelihood(view, carrier, entry, prior) for prior in entry.priors]
+        distances.append(height @ np.mean(of_modes, axis=0))
+    return np.asarray(sizes @ np.stack(distances, axis=1) + SETTINGS.certain)
 
 
 def _lying_likelihood(view: BoxView, carrier: BoxView, entry: Category, prior: SizePrior) -> Float[np.ndarray, "h d"]:
+    """How likely what lies on a carrier of one kind is at every distance, times how well its foot is level with it."""
     likely = place_density(carrier, prior, entry.mount) * size_density(carrier, prior, entry.mount)
     likely = likely / np.maximum(likely.sum(axis=1, keepdims=True), 1e-12)
     likely = (1.0 - SETTINGS.anywhere) * likely + SETTINGS.anywhere / len(DISTANCES_M)

@@ -69,9 +69,7 @@ class HierarchicalRetrieval:
     def __repr__(self) -> str:
         weights = (self.size_weight, self.silhouette_weight, self.similarity_weight)
         numbers = (self.keep, self.cells, *weights, self.settings)
-        appearances = (
-            EMBEDDED_FEATURES if self.similarity is None else repr(self.similarity)
-        )  # other features, other results
+        appearances = EMBEDDED_FEATURES if self.similarity is None else repr(self.similarity)
         return f"HierarchicalRetrieval({_fingerprint(self.library)}, {', '.join(map(str, numbers))}, {appearances})"
 
     def retrieve(

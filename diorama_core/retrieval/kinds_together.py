@@ -52,6 +52,8 @@ class KindsTogetherSettings:
 
 
 SETTINGS = KindsTogetherSettings()
+_NAMES = tuple(c.name for c in CATEGORIES)
+_INDEX = {name: i for i, name in enumerate(_NAMES)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +69,7 @@ class Lying(ArrayValue):
 
 def carries(kind: str) -> bool:
     """Whether things of a kind carry others."""
-    return bool(_carriers()[_index()[kind]])
+    return bool(_carriers()[_INDEX[kind]])
 
 
 def carriers(boxes: Sequence[Box]) -> list[int | None]:
@@ -96,7 +98,7 @@ def kinds_together(
     """
     if not alone:
         return []
-    index = _index()
+    index = _INDEX
     unary = np.zeros((len(alone), len(index)))
     for row, of_one in zip(unary, alone, strict=True):
         for kind, share in of_one.items():
@@ -113,8 +115,7 @@ def _edge(lying: Lying | None) -> Float[np.ndarray, "k k"]:
     """How well every kind of a thing (row) goes with every kind of its carrier (column)."""
     other_shares = _together()
     if lying is not None:
-        index = _index()
-        rows, columns = ([index[kind] for kind in kinds] for kinds in (lying.kinds, lying.carrier_kinds))
+        rows, columns = ([_INDEX[kind] for kind in kinds] for kinds in (lying.kinds, lying.carrier_kinds))
         other_shares = other_shares.copy()
         other_shares[np.ix_(rows, columns)] *= lying.ratio
     return (1.0 - SETTINGS.lies_on_it) + SETTINGS.lies_on_it * other_shares
@@ -158,26 +159,16 @@ def _children_first(carrier_of: Sequence[int | None]) -> list[int]:
 
 
 @cache
-def _names() -> tuple[str, ...]:
-    return tuple(c.name for c in CATEGORIES)
-
-
-@cache
-def _index() -> Mapping[str, int]:
-    return {name: i for i, name in enumerate(_names())}
-
-
-@cache
 def _frequency() -> Float[np.ndarray, "k"]:
     """Frequency of every kind among all things."""
     shares = meanings(UNKNOWN.name, UNKNOWN.name)
-    return np.array([shares.get(name, 0.0) for name in _names()])
+    return np.array([shares.get(name, 0.0) for name in _NAMES])
 
 
 @cache
 def _together() -> Float[np.ndarray, "k k"]:
     """How many times more often a thing of each kind (row) lies on one of each kind (column) than it is met at all."""
-    names, index = _names(), _index()
+    names, index = _NAMES, _INDEX
     lies = np.array([category(name).mount == "surface" for name in names])
     ratio = np.ones((len(names), len(names)))
     for carrier, like in CARRIES_AS.items():
@@ -190,7 +181,7 @@ def _together() -> Float[np.ndarray, "k k"]:
 @cache
 def _carriers() -> Bool[np.ndarray, "k"]:
     """Which kinds carry things."""
-    return np.isin(_names(), list(CARRIES_AS))
+    return np.isin(_NAMES, list(CARRIES_AS))
 
 
 @cache
@@ -198,6 +189,6 @@ def _rooms() -> tuple[Float[np.ndarray, "k"], ...]:
     """For every type of room how many times more often each kind is met there."""
     rooms = []
     for kinds in ROOMS.values():
-        ratio = np.array([SETTINGS.at_home if name in kinds else 1.0 for name in _names()])
+        ratio = np.array([SETTINGS.at_home if name in kinds else 1.0 for name in _NAMES])
         rooms.append(ratio / float(_frequency() @ ratio))
     return tuple(rooms)

@@ -77,6 +77,10 @@ class RetrievalQuery(ArrayValue):
 
 def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSettings = SETTINGS.pools) -> Pool:
     """Shapes worth comparing with the picture, some dozens; nearest sizes where there are more."""
+
+    def nearest(shapes: Sequence[Shape], most: int) -> list[Shape]:
+        return _nearest(_usable(library, shapes, query), query.size_m, most, settings)
+
     senses, best = query.senses, max(query.senses.values())
     members: list[Pooled] = []
     least = 1 if query.named else settings.min_unnamed
@@ -84,24 +88,20 @@ def pool_for(library: ShapeLibrary, query: RetrievalQuery, settings: PoolSetting
         if rank < least or (share >= settings.min_sense * best and len(members) < settings.max_pool):
             is_certain = len(senses) == 1 or kind == query.category
             most = settings.named_pool if is_certain else settings.other_pool if query.named else settings.unnamed_each
-            near_shapes = _nearest(_usable(library, library.in_category(kind), query), query.size_m, most, settings)
-            members += [Pooled(shape, sense_factor(share / best, settings)) for shape in near_shapes]
+            factor = sense_factor(share / best, settings)
+            members += [Pooled(shape, factor) for shape in nearest(library.in_category(kind), most)]
     is_known = bool(members)
     factor = settings.related_factor
     for near in near_kinds(query.category, settings):
         if len(members) >= settings.enough:
             break
-        near_shapes = _nearest(
-            _usable(library, library.in_category(near), query), query.size_m, settings.named_pool, settings
-        )
-        members += [Pooled(shape, factor) for shape in near_shapes]
+        members += [Pooled(shape, factor) for shape in nearest(library.in_category(near), settings.named_pool)]
         factor *= settings.related_factor
     if is_known:
         return Pool(tuple(members))
     note = f"no {query.category} among the shapes; the nearest kinds were taken"
     if not members:
-        usable = _usable(library, library.shapes(), query)
-        members = [Pooled(shape, 1.0) for shape in _nearest(usable, query.size_m, settings.named_pool, settings)]
+        members = [Pooled(shape, 1.0) for shape in nearest(library.shapes(), settings.named_pool)]
     return Pool(tuple(members), note)
 
 
@@ -122,13 +122,10 @@ def _usable(library: ShapeLibrary, shapes: Sequence[Shape], query: RetrievalQuer
 
 def _nearest(shapes: Sequence[Shape], size_m: np.ndarray, most: int, settings: PoolSettings) -> list[Shape]:
     """The shapes nearest in size, either way round, in a stable order."""
-    order = np.argsort([_fit_cost(s, size_m, settings) for s in shapes], kind="stable")[:most]
+    ways = (size_m, size_m[[1, 0, 2]])
+    costs = [min(size_cost(s.size_m, way, settings) for way in ways) for s in shapes]
+    order = np.argsort(costs, kind="stable")[:most]
     return [shapes[i] for i in sorted(order)]
-
-
-def _fit_cost(shape: Shape, size_m: np.ndarray, settings: PoolSettings) -> float:
-    """How unlike in size, either way round."""
-    return min(size_cost(shape.size_m, size_m, settings), size_cost(shape.size_m, size_m[[1, 0, 2]], settings))
 
 
 def size_cost(

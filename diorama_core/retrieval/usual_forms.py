@@ -64,7 +64,8 @@ def usual_form_factor(
     if shape.category in _FLAT_KINDS:
         return float((_FLAT[_outline(shape, appearance, settings)] / max(_FLAT.values())) ** settings.says)
     if shape.category == "plant":
-        return float((_PLANTS[_plant(shape)] / max(_PLANTS.values())) ** settings.says)
+        plant = "other" if _OTHER_PLANTS & set(shape.caption.lower().split()) else "leafy"
+        return float((_PLANTS[plant] / max(_PLANTS.values())) ** settings.says)
     row = category(shape.category)
     bases = None if row.base is None else _BASES[row.base]
     tops = _TOPS if shape.category in _TABLES else None
@@ -72,17 +73,10 @@ def usual_form_factor(
     sides = None if closed is None else {"closed": closed, "open": 1.0 - closed}
     if bases is None and tops is None and sides is None:
         return 1.0
-    of_form = zip(
-        (bases, tops, sides),
-        (*_form(library, shape, appearance, settings), _side(shape, appearance, settings)),
-        strict=True,
-    )
-    usual = [shares.get(form, settings.rare) / max(shares.values()) for shares, form in of_form if shares is not None]
+    forms = (*_form(library, shape, appearance, settings), _side(shape, appearance, settings))
+    known = [(shares, form) for shares, form in zip((bases, tops, sides), forms, strict=True) if shares is not None]
+    usual = [shares.get(form, settings.rare) / max(shares.values()) for shares, form in known]
     return float(np.prod(usual) ** settings.says)
-
-
-def _plant(shape: Shape) -> str:
-    return "other" if _OTHER_PLANTS & set(shape.caption.lower().split()) else "leafy"
 
 
 def _form(

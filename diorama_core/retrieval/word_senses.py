@@ -102,9 +102,8 @@ def sense_probabilities(
     log_likelihoods = [-0.5 * ((HEIGHTS_M - np.clip(usual, HEIGHTS_M[0], HEIGHTS_M[-1])) / sigma) ** 2]
     for of_word, of_view in zip(senses, likely, strict=True):
         log_likelihoods.append(np.log(sum(share * of_view[kind] for kind, share in of_word.items())))
-    log_height = np.sort(np.stack(log_likelihoods), axis=0).sum(
-        axis=0
-    )  # the order of the objects must not show in a bit
+    # Sorted: the order of the objects must not show in a bit.
+    log_height = np.sort(np.stack(log_likelihoods), axis=0).sum(axis=0)
     height = np.exp(log_height - log_height.max())
     height /= height.sum()
     probabilities: list[Mapping[str, float]] = []

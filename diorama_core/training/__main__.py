@@ -31,11 +31,11 @@ from diorama_core.training.export import (
 )
 from diorama_core.training.facings import FacingModel, as_settings, beginning, certificate, gather
 from diorama_core.training.kind_evidence import train as train_evidence
-from diorama_core.training.picture_files import PictureFiles
-from diorama_core.training.pictures import category_names, make_pictures
+from diorama_core.training.pictures import PictureFiles, category_names, make_pictures
 from diorama_core.training.shape_views import ShapeViewFiles, make_shape_views
 from diorama_core.training.surfaces import SurfaceFiles, make_surfaces
 from diorama_core.training.train import (
+    Run,
     Schedule,
     Trainer,
     detector_trainer,
@@ -45,11 +45,13 @@ from diorama_core.training.train import (
 )
 from diorama_core.training.windows import WindowFiles, make_windows
 
-NETWORKS = ("detector", "namer", "outliner", "surfaces")
-DETECTOR_SCHEDULE = Schedule(steps=12000, batch=24)
-NAMER_SCHEDULE = Schedule(steps=8000, batch=128)
-OUTLINER_SCHEDULE = Schedule(steps=20000, batch=64)
-SURFACE_SCHEDULE = Schedule(steps=1000, batch=8)
+SCHEDULES = {
+    "detector": Schedule(steps=12000, batch=24),
+    "namer": Schedule(steps=8000, batch=128),
+    "outliner": Schedule(steps=20000, batch=64),
+    "surfaces": Schedule(steps=1000, batch=8),
+}
+"""How long each network learns."""
 
 
 def main() -> int:
@@ -91,7 +93,7 @@ def _add_rendering(steps: Any) -> None:
 def _add_training(steps: Any) -> None:
     train = steps.add_parser("train", help="train one network; goes on from its checkpoint")
     train.set_defaults(run=_train)
-    train.add_argument("network", choices=NETWORKS)
+    train.add_argument("network", choices=tuple(SCHEDULES))
     train.add_argument("--pictures", type=Path, required=True, help="folder of what is rendered for it")
     train.add_argument("--checkpoints", type=Path, required=True)
     train.add_argument("--steps", type=int)
@@ -165,38 +167,37 @@ def _train(a: argparse.Namespace) -> None:
     torch.set_num_threads(a.threads)
     trainer = _trainer(a.network, a.pictures, a.checkpoints, a.steps, a.device, a.workers)
     trainer.run(_progress())
-    print(f"{a.network}: {trainer.step} steps: {trainer.checkpoint}")
+    print(f"{a.network}: {trainer.step} steps: {trainer.how.checkpoint}")
 
 
 def _trainer(
-    network: str, pictures: Path, checkpoints: Path, steps: int | None, device: str = "cpu", workers: int = 1
+    network: str, pictures: Path, checkpoints: Path, steps: int | None = None, device: str = "cpu", workers: int = 1
 ) -> Trainer:
     checkpoints.mkdir(parents=True, exist_ok=True)
-    path = checkpoints / f"{network}.pt"
+    how = Run(SCHEDULES[network].lasting(steps), checkpoints / f"{network}.pt", device, workers)
     if network == "outliner":
-        return outliner_trainer(WindowFiles.of(pictures), OUTLINER_SCHEDULE.lasting(steps), path, device, workers)
+        return outliner_trainer(WindowFiles.of(pictures), how)
     if network == "surfaces":
-        return surface_trainer(SurfaceFiles.read(pictures), SURFACE_SCHEDULE.lasting(steps), path, device, workers)
+        return surface_trainer(SurfaceFiles.read(pictures), how)
     files, kinds = PictureFiles.of(pictures), len(category_names(built_in_library()))
     if network == "detector":
-        return detector_trainer(files, kinds, DETECTOR_SCHEDULE.lasting(steps), path, device, workers)
-    shapes = ShapeViewFiles.of(pictures)
-    return namer_trainer(files, shapes, kinds, NAMER_SCHEDULE.lasting(steps), path, device, workers)
+        return detector_trainer(files, kinds, how)
+    return namer_trainer(files, ShapeViewFiles.of(pictures), kinds, how)
 
 
 def _export(a: argparse.Namespace) -> None:
     a.output.mkdir(parents=True, exist_ok=True)
     if a.networks == "outliner":
-        export_outliner(_trainer("outliner", a.pictures, a.checkpoints, None).averaged, a.output / OUTLINER)
+        export_outliner(_trainer("outliner", a.pictures, a.checkpoints).averaged, a.output / OUTLINER)
     elif a.networks == "surfaces":
-        export_surfaces(_trainer("surfaces", a.pictures, a.checkpoints, None).averaged, a.output / SURFACES)
+        export_surfaces(_trainer("surfaces", a.pictures, a.checkpoints).averaged, a.output / SURFACES)
     else:
         _export_recogniser(a)
     print(f"networks written: {a.output}")
 
 
 def _export_recogniser(a: argparse.Namespace) -> None:
-    detector, namer = (_trainer(n, a.pictures, a.checkpoints, None) for n in ("detector", "namer"))
+    detector, namer = (_trainer(n, a.pictures, a.checkpoints) for n in ("detector", "namer"))
     export_detector(detector.averaged, a.output / DETECTOR)
     export_namer(namer.averaged, a.output / NAMER)
     files = PictureFiles.of(a.pictures)
@@ -204,8 +205,8 @@ def _export_recogniser(a: argparse.Namespace) -> None:
         a.output / CARD,
         category_names(built_in_library()),
         rooms=len(files.rooms),
-        detector={"steps": detector.step, "batch": detector.schedule.batch, "seed": detector.schedule.seed},
-        namer={"steps": namer.step, "batch": namer.schedule.batch, "seed": namer.schedule.seed},
+        detector={"steps": detector.step, "batch": detector.how.schedule.batch, "seed": detector.how.schedule.seed},
+        namer={"steps": namer.step, "batch": namer.how.schedule.batch, "seed": namer.how.schedule.seed},
     )
 
 

@@ -25,8 +25,7 @@ from diorama_core.models.recogniser import places
 from diorama_core.progress import SILENT, Progress
 from diorama_core.training.export import export_detector
 from diorama_core.training.networks import Detector, detector_loss
-from diorama_core.training.picture_files import PictureFiles
-from diorama_core.training.pictures import LabelledPicture
+from diorama_core.training.pictures import LabelledPicture, PictureFiles
 from diorama_core.training.train import SIZE, Schedule, detector_batch
 
 LONGEST_PX = 1000

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import onnx
 import torch
-from onnx import ModelProto, NodeProto, TensorProto, compose, helper, numpy_helper
+from onnx import ModelProto, NodeProto, compose, helper, numpy_helper
 from torch import nn
 
 from diorama_core.errors import InputError
@@ -37,17 +37,9 @@ def export_detector(network: nn.Module, path: Path) -> None:
 
 def export_namer(network: nn.Module, path: Path) -> None:
     """Write the namer; any number of crops."""
-    dynamic = {"crops": {0: "b"}, "geometry": {0: "b"}, "kinds": {0: "b"}, "forms": {0: "b"}}
+    dynamic = {name: {0: "b"} for name in (*_INPUTS, *_OUTPUTS)}
     example = (torch.zeros(2, 3, CROP_SIDE, CROP_SIDE), torch.zeros(2, 6))
-    write_graph(
-        network,
-        example,
-        path,
-        inputs=["crops", "geometry"],
-        outputs=["kinds", "forms"],
-        dynamic=dynamic,
-        half_weights=True,
-    )
+    write_graph(network, example, path, inputs=[*_INPUTS], outputs=[*_OUTPUTS], dynamic=dynamic, half_weights=True)
 
 
 def export_outliner(network: nn.Module, path: Path) -> None:
@@ -99,16 +91,15 @@ def join_namers(paths: Sequence[Path], output: Path) -> None:
             f"{paths[0]}: tells {', '.join(attributes[0])} only; begin with a namer that tells every attribute"
         )
     nodes: list[NodeProto] = []
-    values = [_array(np.array(_TINY, np.float32), "tiny")]
+    values = [numpy_helper.from_array(np.array(_TINY, np.float32), "tiny")]
     for k, graph in enumerate(graphs):
         prefixed = compose.add_prefix(graph, f"{k}_").graph
+        shared = {f"{k}_{name}": name for name in _INPUTS}
         for node in prefixed.node:
-            node.input[:] = [name.removeprefix(f"{k}_") if name in _names(k) else name for name in node.input]
+            node.input[:] = [shared.get(name, name) for name in node.input]
         nodes += [*prefixed.node, *_probabilities(k, attributes[k])]
-        values += [
-            *prefixed.initializer,
-            _array(np.array([len(VALUES[name]) for name in attributes[k]], np.int64), f"{k}_sizes"),
-        ]
+        sizes = np.array([len(VALUES[name]) for name in attributes[k]], np.int64)
+        values += [*prefixed.initializer, numpy_helper.from_array(sizes, f"{k}_sizes")]
     for name in ("kinds", *MEASURED):
         parts = [f"{k}_{name}_probability" for k in range(len(graphs)) if name == "kinds" or name in attributes[k]]
         nodes.append(helper.make_node("Mean", parts, [f"{name}_mean"]))
@@ -135,10 +126,6 @@ def _attributes(graph: ModelProto, path: Path) -> tuple[str, ...]:
     return MEASURED[: ends.index(width) + 1]
 
 
-def _names(k: int) -> tuple[str, ...]:
-    return tuple(f"{k}_{name}" for name in _INPUTS)
-
-
 def _probabilities(k: int, attributes: Sequence[str]) -> list[NodeProto]:
     """From the logits of one namer: all kinds together, each attribute of form for itself."""
     parts = [f"{k}_{name}" for name in attributes]
@@ -147,7 +134,3 @@ def _probabilities(k: int, attributes: Sequence[str]) -> list[NodeProto]:
         helper.make_node("Split", [f"{k}_forms", f"{k}_sizes"], parts, axis=1),
         *(helper.make_node("Softmax", [part], [f"{part}_probability"], axis=1) for part in parts),
     ]
-
-
-def _array(value: np.ndarray, name: str) -> TensorProto:
-    return numpy_helper.from_array(value, name)

@@ -257,13 +257,10 @@ def naming_loss(
         forms: what is right; -1 where an attribute is not asked.
         form_weights: of the values of each attribute.
     """
-    of_kind, of_forms = (
-        logits[0].float(),
-        torch.split(logits[1].float(), [len(VALUES[name]) for name in MEASURED], dim=1),
-    )
+    of_kind, sizes = logits[0].float(), [len(VALUES[name]) for name in MEASURED]
     total = functional.cross_entropy(of_kind, kinds, label_smoothing=0.05)
     right, asked = 0.0, 0
-    for k, values in enumerate(of_forms):
+    for k, values in enumerate(torch.split(logits[1].float(), sizes, dim=1)):
         has = forms[:, k] >= 0
         if has.any():
             total = total + FORM_WEIGHT * functional.cross_entropy(

@@ -17,8 +17,8 @@ from diorama_core.errors import InputError, LibraryError, SceneError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.form import MEASURED, form_at, value_indices
 from diorama_core.library.record import ShapeLibrary
+from diorama_core.models.images import box_geometry
 from diorama_core.progress import SILENT, Progress
-from diorama_core.scene.types import SceneObject
 from diorama_core.scene.values import ArrayValue
 from diorama_core.synthesis import sample_cameras
 from diorama_core.synthesis.cameras import CameraRanges
@@ -99,6 +99,14 @@ def read_boxes(path: Path, k: int) -> tuple[Float32[np.ndarray, "n 4"], Int[np.n
         return boxes, categories, picture.size
 
 
+def encode_picture(rgb: UInt8[np.ndarray, "h w 3"]) -> UInt8[np.ndarray, "n"]:
+    """A picture as JPEG."""
+    ok, data = cv2.imencode(".jpg", rgb[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    if not ok:
+        raise ValueError("the picture cannot be encoded")
+    return data.ravel()
+
+
 def decode_picture(data: UInt8[np.ndarray, "n"], path: Path) -> UInt8[np.ndarray, "h w 3"]:
     """The pixels of an encoded picture of a file.
 
@@ -120,18 +128,84 @@ def _photograph(seed: int, library: ShapeLibrary, names: tuple[str, ...]) -> tup
         return ()
     index = {name: k for k, name in enumerate(names)}
     kinds = np.array([index[o.category] for o in scene.objects], dtype=np.int64)
-    forms = np.array([_form(o, library) for o in scene.objects], np.int8).reshape(-1, len(MEASURED))
+    forms = [value_indices(form_at(library, library.shape(o.shape_id), o.size_m)) for o in scene.objects]
+    forms_of = np.array(forms, np.int8).reshape(-1, len(MEASURED))
     studio, pictures = Studio(scene, library), []
     for camera in cameras:
         rgb, ids = studio.photograph(camera, SIZE)
         boxes, visible, pixels = visible_boxes(ids, len(kinds))
-        pictures.append(LabelledPicture(rgb, boxes, kinds[visible], pixels, forms[visible]))
+        pictures.append(LabelledPicture(rgb, boxes, kinds[visible], pixels, forms_of[visible]))
     return tuple(pictures)
 
 
-def _form(item: SceneObject, library: ShapeLibrary) -> Int8[np.ndarray, "7"]:
-    shape = library.shape(item.shape_id)
-    return value_indices(form_at(library, shape, item.size_m))
+@dataclass(frozen=True)
+class PictureFiles:
+    """The pictures of a folder of rendered rooms."""
+
+    pictures: tuple[tuple[Path, int], ...]
+    """Each one's file and place in it."""
+
+    @classmethod
+    def of(cls, folder: Path) -> PictureFiles:
+        """All pictures of a folder.
+
+        Raises:
+            InputError: where there is none.
+        """
+        pictures = tuple((path, k) for path in sorted(folder.glob("room_*.npz")) for k in range(count_pictures(path)))
+        if not pictures:
+            raise InputError(
+                f"{folder}: no pictures are there; make some: python -m diorama_core.training pictures {folder}"
+            )
+        return cls(pictures)
+
+    @property
+    def rooms(self) -> tuple[Path, ...]:
+        """The files, in order."""
+        return tuple(dict.fromkeys(path for path, _ in self.pictures))
+
+    def draw(self, rng: np.random.Generator) -> LabelledPicture:
+        """A picture of chance."""
+        return read_picture(*self.pictures[int(rng.integers(len(self.pictures)))])
+
+
+@dataclass(frozen=True, eq=False)
+class BoxStatistics:
+    """Where boxes of every category lie, and so how often each is met."""
+
+    geometry: tuple[Float32[np.ndarray, "_ 6"], ...]
+    """For every category the `box_geometry` of its boxes."""
+
+    @classmethod
+    def of(cls, files: PictureFiles, kinds: int) -> BoxStatistics:
+        """Statistics of all pictures of some files."""
+        rows: list[list[np.ndarray]] = [[] for _ in range(kinds)]
+        for path, k in files.pictures:
+            boxes, categories, (width, height) = read_boxes(path, k)
+            for box, category in zip(boxes, categories, strict=True):
+                rows[int(category)].append(box_geometry(box, width, height))
+        return cls(tuple(np.array(r, np.float32).reshape(-1, 6) for r in rows))
+
+    @property
+    def counts(self) -> Float32[np.ndarray, "k"]:
+        """How often each category is seen."""
+        return np.array([len(rows) for rows in self.geometry], np.float32)
+
+    def draw(self, category: int, sides: tuple[float, float], rng: np.random.Generator) -> Float32[np.ndarray, "6"]:
+        """A place and size of chance for a box of given proportions; of any category where this one is never met.
+
+        Args:
+            category: what it shows.
+            sides: its width and height, to any scale.
+            rng: the source of chance.
+        """
+        rows = self.geometry[category]
+        if not len(rows):
+            rows = self.geometry[int(np.argmax(self.counts))]
+        row = rows[int(rng.integers(len(rows)))].copy()
+        middle, shape = (row[3] + row[4]) / 2, float(np.log(sides[0] / sides[1]))
+        row[3:] = middle + shape / 2, middle - shape / 2, shape
+        return row
 
 
 def visible_boxes(
@@ -157,11 +231,8 @@ def visible_boxes(
 def _pack(pictures: tuple[LabelledPicture, ...]) -> bytes:
     arrays: dict[str, np.ndarray] = {"count": np.array(len(pictures))}
     for k, picture in enumerate(pictures):
-        ok, data = cv2.imencode(".jpg", picture.rgb[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
-        if not ok:
-            raise ValueError("the picture cannot be encoded")
         arrays |= {
-            f"jpeg_{k}": data.ravel(),
+            f"jpeg_{k}": encode_picture(picture.rgb),
             f"boxes_{k}": picture.boxes,
             f"categories_{k}": picture.categories,
             f"pixels_{k}": picture.pixels,

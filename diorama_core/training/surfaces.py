@@ -26,7 +26,7 @@ from diorama_core.synthesis.cameras import CameraRanges
 from diorama_core.synthesis.truth import Studio
 from diorama_core.training.augment import photograph
 from diorama_core.training.networks import Residual, convolution
-from diorama_core.training.pictures import JPEG_QUALITY, decode_picture, make_files
+from diorama_core.training.pictures import decode_picture, encode_picture, make_files
 from diorama_core.training.rooms import random_room
 
 SIZE = (512, 384)
@@ -56,13 +56,7 @@ def make_surfaces(folder: Path, library: ShapeLibrary, seeds: range, progress: P
     """Render the rooms of some seeds that are not in the folder yet.
 
     Args:
-        folder: One file a room goes there.
-        library: Where shapes come from.
-        seeds: Of the rooms.
-        progress: Reported after each room; honours cancelling, and the next call goes on.
-
-    Returns:
-        The number of rooms rendered now.
+        folder, library, seeds, progress: as of `pictures.make_pictures`, like the number that is returned.
     """
     return make_files(
         folder, seeds, "surfaces_{:06d}.npz".format, lambda seed: _pack(_photograph(seed, library)), progress
@@ -90,10 +84,7 @@ def _picture(studio: Studio, planes: tuple[Plane, ...], camera: Camera) -> Surfa
 def _pack(pictures: tuple[SurfacePicture, ...]) -> bytes:
     arrays: dict[str, np.ndarray] = {"count": np.array(len(pictures))}
     for k, picture in enumerate(pictures):
-        ok, data = cv2.imencode(".jpg", picture.rgb[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
-        if not ok:
-            raise ValueError("the picture cannot be encoded")
-        arrays |= {f"jpeg_{k}": data.ravel(), f"surface_{k}": picture.surface}
+        arrays |= {f"jpeg_{k}": encode_picture(picture.rgb), f"surface_{k}": picture.surface}
         arrays |= {f"rise_{k}": picture.rise.astype(np.float16)}
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]  # the keywords are names of arrays

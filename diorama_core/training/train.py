@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
@@ -27,8 +28,7 @@ from diorama_core.training.networks import (
     naming_loss,
     outline_loss,
 )
-from diorama_core.training.picture_files import BoxStatistics, PictureFiles
-from diorama_core.training.pictures import LabelledPicture
+from diorama_core.training.pictures import BoxStatistics, LabelledPicture, PictureFiles
 from diorama_core.training.shape_views import ShapeViewFiles, crop_before
 from diorama_core.training.surfaces import SurfaceFiles, SurfaceHead, surface_loss
 from diorama_core.training.windows import WindowFiles
@@ -72,6 +72,19 @@ class Schedule:
 
 
 @dataclass(frozen=True)
+class Run:
+    """How long a network learns, and where."""
+
+    schedule: Schedule
+    checkpoint: Path
+    """File where the state is saved, and read from where it exists."""
+    device: str = "cpu"
+    """Where it learns: "cpu" or "cuda"."""
+    workers: int = 1
+    """Processes that prepare batches; the result does not depend on them."""
+
+
+@dataclass(frozen=True)
 class Batches(Dataset[tuple[Tensor, ...]]):
     """The batch of every step, made from the step's own generator."""
 
@@ -90,31 +103,25 @@ class Trainer:
         network: what learns.
         loss: of a batch, and words about its terms; it finds both on the device.
         batch_of: makes the batch of a step from that step's generator.
-        schedule: how long.
-        checkpoint: where the state is saved, and read from where it exists.
-        device: where it learns: "cpu" or "cuda".
-        workers: processes that prepare batches; the result does not depend on them.
+        how: how long, and where.
     """
 
     network: nn.Module
     loss: Callable[[nn.Module, tuple[Tensor, ...]], tuple[Tensor, str]]
     batch_of: Callable[[np.random.Generator], tuple[Tensor, ...]]
-    schedule: Schedule
-    checkpoint: Path
-    device: str = "cpu"
-    workers: int = 1
+    how: Run
     averaged: nn.Module = field(init=False)
     step: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
-        self.network.to(self.device)
+        self.network.to(self.how.device)
         for value in self.network.parameters():
             if value.dim() == 4:  # convolutions are faster with the channels last
                 value.data = value.data.contiguous(memory_format=torch.channels_last)
         self.averaged = copy.deepcopy(self.network).eval()
-        self._optimiser = torch.optim.AdamW(self.network.parameters(), lr=self.schedule.rate, weight_decay=0.02)
-        if self.checkpoint.exists():
-            saved = torch.load(self.checkpoint, map_location=self.device, weights_only=True)
+        self._optimiser = torch.optim.AdamW(self.network.parameters(), lr=self.how.schedule.rate, weight_decay=0.02)
+        if self.how.checkpoint.exists():
+            saved = torch.load(self.how.checkpoint, map_location=self.how.device, weights_only=True)
             self.network.load_state_dict(saved["network"])
             self.averaged.load_state_dict(saved["averaged"])
             self._optimiser.load_state_dict(saved["optimiser"])
@@ -127,31 +134,31 @@ class Trainer:
             Cancelled: on request; the next run goes on from the last checkpoint.
         """
         for batch in self._batches():
-            words = self._learn(tuple(part.to(self.device, non_blocking=True) for part in batch))
+            words = self._learn(tuple(part.to(self.how.device, non_blocking=True) for part in batch))
             self.step += 1
             if self.step % 20 == 0:
-                progress.report(self.step / self.schedule.steps, f"step {self.step}: {words}")
-            if self.step % self.schedule.save_every == 0 or self.step == self.schedule.steps:
+                progress.report(self.step / self.how.schedule.steps, f"step {self.step}: {words}")
+            if self.step % self.how.schedule.save_every == 0 or self.step == self.how.schedule.steps:
                 self._save()
         return self.averaged
 
     def _batches(self) -> Iterable[tuple[Tensor, ...]]:
         return DataLoader(
-            Batches(self.batch_of, self.schedule.seed),
+            Batches(self.batch_of, self.how.schedule.seed),
             batch_size=None,
-            sampler=range(self.step, self.schedule.steps),
-            num_workers=self.workers,
+            sampler=range(self.step, self.how.schedule.steps),
+            num_workers=self.how.workers,
             prefetch_factor=AHEAD,
             multiprocessing_context="fork",  # what makes batches is not copied
-            pin_memory=self.device == "cuda",
+            pin_memory=self.how.device == "cuda",
         )
 
     def _learn(self, batch: tuple[Tensor, ...]) -> str:
         self.network.train()
-        torch.manual_seed(self.schedule.seed + self.step)  # dropout goes on as if the run had not stopped
+        torch.manual_seed(self.how.schedule.seed + self.step)  # dropout goes on as if the run had not stopped
         for group in self._optimiser.param_groups:
-            group["lr"] = self.schedule.rate_at(self.step)
-        with torch.autocast(self.device, torch.bfloat16):
+            group["lr"] = self.how.schedule.rate_at(self.step)
+        with torch.autocast(self.how.device, torch.bfloat16):
             total, words = self.loss(self.network, batch)
         self._optimiser.zero_grad(set_to_none=True)
         total.backward()  # type: ignore[no-untyped-call]  # torch annotates its result only
@@ -171,7 +178,7 @@ class Trainer:
                 value.copy_(state[name])
 
     def _save(self) -> None:
-        part = self.checkpoint.with_suffix(".part")
+        part = self.how.checkpoint.with_suffix(".part")
         state: dict[str, Any] = {
             "network": self.network.state_dict(),
             "averaged": self.averaged.state_dict(),
@@ -179,33 +186,19 @@ class Trainer:
             "step": self.step,
         }
         torch.save(state, part)
-        part.replace(self.checkpoint)
+        part.replace(self.how.checkpoint)
 
 
-def detector_trainer(
-    files: PictureFiles, kinds: int, schedule: Schedule, checkpoint: Path, device: str = "cpu", workers: int = 1
-) -> Trainer:
-    """Everything needed to train the detector.
-
-    Args:
-        files: what is learnt from.
-        kinds: number of categories.
-        schedule: of the steps.
-        checkpoint: file from which training goes on, and to which it is saved.
-        device: cpu or cuda.
-        workers: processes that read pictures.
-    """
-    torch.manual_seed(schedule.seed)
-    centres, strides = (torch.from_numpy(a).to(device) for a in places(*SIZE))
-
-    def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:
-        return detector_batch(files, schedule.batch, rng)
+def detector_trainer(files: PictureFiles, kinds: int, how: Run) -> Trainer:
+    """Everything needed to train the detector of so many categories."""
+    torch.manual_seed(how.schedule.seed)
+    centres, strides = (torch.from_numpy(a).to(how.device) for a in places(*SIZE))
 
     def loss(network: nn.Module, batch: tuple[Tensor, ...]) -> tuple[Tensor, str]:
         losses = detector_loss(network(batch[0]), batch[1], batch[2], centres, strides)
         return losses.total, f"score {losses.score:.3f}, box {losses.box:.3f}, kind {losses.kind:.3f}"
 
-    return Trainer(Detector(kinds), loss, batch_of, schedule, checkpoint, device, workers)
+    return Trainer(Detector(kinds), loss, partial(detector_batch, files, how.schedule.batch), how)
 
 
 def detector_batch(files: Pictures, count: int, rng: np.random.Generator) -> tuple[Tensor, Tensor, Tensor]:
@@ -222,39 +215,28 @@ def detector_batch(files: Pictures, count: int, rng: np.random.Generator) -> tup
     return _pictures_tensor(pixels), torch.from_numpy(np.stack(boxes)), torch.from_numpy(np.stack(kinds))
 
 
-def namer_trainer(
-    files: PictureFiles,
-    shapes: ShapeViewFiles,
-    kinds: int,
-    schedule: Schedule,
-    checkpoint: Path,
-    device: str = "cpu",
-    workers: int = 1,
-) -> Trainer:
+def namer_trainer(files: PictureFiles, shapes: ShapeViewFiles, kinds: int, how: Run) -> Trainer:
     """Everything needed to train the namer.
 
     Args:
         files: rendered rooms.
         shapes: rendered shapes.
         kinds: number of categories.
-        schedule: how long.
-        checkpoint: where the state goes.
-        device: where it learns.
-        workers: processes that prepare batches.
+        how: how long, and where.
     """
-    torch.manual_seed(schedule.seed + 1)
+    torch.manual_seed(how.schedule.seed + 1)
     statistics, of_forms = BoxStatistics.of(files, kinds), shapes.form_statistics(kinds)
-    asked, weights = torch.from_numpy(of_forms.asked), [torch.from_numpy(w).to(device) for w in of_forms.weights]
+    asked, weights = torch.from_numpy(of_forms.asked), [torch.from_numpy(w).to(how.device) for w in of_forms.weights]
 
     def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:
-        crops, geometry, right, forms = namer_batch(files, shapes, statistics, schedule.batch, rng)
+        crops, geometry, right, forms = namer_batch(files, shapes, statistics, how.schedule.batch, rng)
         return crops, geometry, right, torch.where(asked[right], forms, -1)
 
     def loss(network: nn.Module, batch: tuple[Tensor, ...]) -> tuple[Tensor, str]:
         losses = naming_loss(network(batch[0], batch[1]), batch[2], batch[3], weights)
         return losses.total, f"loss {losses.total.detach():.3f}, kind right {losses.kind:.2f}, form {losses.form:.2f}"
 
-    return Trainer(Namer(kinds), loss, batch_of, schedule, checkpoint, device, workers)
+    return Trainer(Namer(kinds), loss, batch_of, how)
 
 
 def namer_batch(
@@ -295,28 +277,15 @@ def namer_batch(
     )
 
 
-def outliner_trainer(
-    files: WindowFiles, schedule: Schedule, checkpoint: Path, device: str = "cpu", workers: int = 1
-) -> Trainer:
-    """Everything needed to train the outliner.
-
-    Args:
-        files: what is learnt from.
-        schedule: of the steps.
-        checkpoint: file from which training goes on, and to which it is saved.
-        device: cpu or cuda.
-        workers: processes that read pictures.
-    """
-    torch.manual_seed(schedule.seed + 2)
-
-    def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:
-        return files.batch(schedule.batch, rng)
+def outliner_trainer(files: WindowFiles, how: Run) -> Trainer:
+    """Everything needed to train the outliner."""
+    torch.manual_seed(how.schedule.seed + 2)
 
     def loss(network: nn.Module, batch: tuple[Tensor, ...]) -> tuple[Tensor, str]:
         value = outline_loss(network(batch[0]), batch[1])
         return value, f"loss {float(value.detach()):.3f}"
 
-    return Trainer(OutlineNetwork(), loss, batch_of, schedule, checkpoint, device, workers)
+    return Trainer(OutlineNetwork(), loss, partial(files.batch, how.schedule.batch), how)
 
 
 def _crop(picture: LabelledPicture, k: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -346,27 +315,14 @@ def _pictures_tensor(pictures: Sequence[np.ndarray]) -> Tensor:
     return torch.from_numpy(np.ascontiguousarray(stacked)).float() / 255.0
 
 
-def surface_trainer(
-    files: SurfaceFiles, schedule: Schedule, checkpoint: Path, device: str = "cpu", workers: int = 1
-) -> Trainer:
-    """Everything needed to train the head that tells a room's surfaces.
-
-    Args:
-        files: what is learnt from.
-        schedule: of the steps.
-        checkpoint: file from which training goes on, and to which it is saved.
-        device: cpu or cuda.
-        workers: processes that read pictures and look at them with the backbone.
-    """
-    torch.manual_seed(schedule.seed + 3)
-
-    def batch_of(rng: np.random.Generator) -> tuple[Tensor, ...]:
-        return files.batch(schedule.batch, rng)
+def surface_trainer(files: SurfaceFiles, how: Run) -> Trainer:
+    """Everything needed to train the head that tells a room's surfaces."""
+    torch.manual_seed(how.schedule.seed + 3)
 
     def loss(network: nn.Module, batch: tuple[Tensor, ...]) -> tuple[Tensor, str]:
         assert isinstance(network, SurfaceHead)
-        with torch.autocast(device, enabled=False):  # dilated convolutions lose their gradients in bfloat16
+        with torch.autocast(how.device, enabled=False):  # dilated convolutions lose their gradients in bfloat16
             total, right = surface_loss(network.logits(*batch[:-1]), batch[-1])
         return total, f"loss {float(total.detach()):.3f}, surfaces right {right:.3f}"
 
-    return Trainer(SurfaceHead(), loss, batch_of, schedule, checkpoint, device, workers)
+    return Trainer(SurfaceHead(), loss, partial(files.batch, how.schedule.batch), how)

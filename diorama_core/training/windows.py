@@ -49,13 +49,7 @@ def make_windows(folder: Path, library: ShapeLibrary, seeds: range, progress: Pr
     """Render the rooms of some seeds that are not in the folder yet.
 
     Args:
-        folder: One file a room goes there.
-        library: Where shapes come from.
-        seeds: Of the rooms.
-        progress: Reported after each room; honours cancelling, and the next call goes on.
-
-    Returns:
-        The number of rooms rendered now.
+        folder, library, seeds, progress: as of `pictures.make_pictures`, like the number that is returned.
     """
     return make_files(
         folder, seeds, "windows_{:06d}.npz".format, lambda seed: _pack(_room_windows(seed, library)), progress
@@ -132,11 +126,10 @@ def _room_windows(seed: int, library: ShapeLibrary) -> Windows:
             rgb.append(resample(picture, box))
             share.append((resample(mine, box) * 255).astype(np.uint8))
             inside.append(resample(np.ones_like(mine), box) > 0.5)
-    blank = np.zeros((0, SIDE, SIDE))
     return Windows(
-        np.array(rgb, np.uint8) if rgb else np.zeros((0, SIDE, SIDE, 3), np.uint8),
-        np.array(share if share else blank, np.uint8),
-        np.array(inside if inside else blank, bool),
+        np.array(rgb, np.uint8).reshape(-1, SIDE, SIDE, 3),
+        np.array(share, np.uint8).reshape(-1, SIDE, SIDE),
+        np.array(inside, bool).reshape(-1, SIDE, SIDE),
     )
 
 

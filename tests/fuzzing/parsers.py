@@ -273,7 +273,7 @@ def _record(data: bytes) -> object:
 def _metadata(data: bytes) -> object:
     import gzip
 
-    from diorama_core.library.datasets.published import read_json
+    from diorama_core.library.datasets import read_json
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "models.json.gz"

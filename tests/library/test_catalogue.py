@@ -1,9 +1,8 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import io
-import json
-import struct
 import subprocess
 import sys
 import threading
@@ -16,6 +15,7 @@ import pytest
 import trimesh
 
 from diorama_core.errors import LibraryError
+from diorama_core.io.glb import read_glb
 from diorama_core.library import catalogue, furniture
 from diorama_core.library.catalogue import (
     BuiltInLibrary,
@@ -40,8 +40,8 @@ DESIGN = next(d for d in furniture.designs() if d.id == "bed-channel-green")
 
 
 @pytest.fixture(scope="module")
-def library(tmp_path_factory: pytest.TempPathFactory) -> BuiltInLibrary:
-    return built_in_library(tmp_path_factory.mktemp("cache"))
+def library() -> BuiltInLibrary:
+    return built_in_library()
 
 
 def in_category(category: str) -> list[Design]:
@@ -105,22 +105,21 @@ def test_glb_opens_with_textures_and_normals(library: BuiltInLibrary, shape_id: 
     data = library.glb(shape_id)
     scene = trimesh.load(io.BytesIO(data), file_type="glb")
     assert np.allclose(scene.bounds, library.mesh(shape_id).bounds, atol=1e-4)
-    length = struct.unpack("<I", data[12:16])[0]
-    document = json.loads(data[20 : 20 + length])
+    document, _ = read_glb(data)
     assert "extensionsRequired" not in document
     assert all("NORMAL" in p["attributes"] for mesh in document["meshes"] for p in mesh["primitives"])
     assert all("baseColorTexture" in m["pbrMetallicRoughness"] for m in document["materials"])
 
 
-def test_same_bytes_in_another_process(library: BuiltInLibrary, tmp_path: Path) -> None:
+def test_same_keys_and_bytes_in_another_process(library: BuiltInLibrary, tmp_path: Path) -> None:
     code = (
         "import sys, hashlib; from pathlib import Path; from diorama_core.library.catalogue import built_in_library;"
-        "print(hashlib.sha256(built_in_library(Path(sys.argv[1])).glb('plant-fiddle')).hexdigest())"
+        "library = built_in_library(Path(sys.argv[1]));"
+        "print(hashlib.sha256(library.glb('plant-fiddle')).hexdigest(), *(s.content_hash for s in library.shapes()))"
     )
-    out = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, check=True)
-    import hashlib
-
-    assert out.stdout.strip() == hashlib.sha256(library.glb("plant-fiddle")).hexdigest()
+    out = subprocess.run([sys.executable, "-OO", "-c", code, str(tmp_path)], capture_output=True, text=True, check=True)
+    here = hashlib.sha256(library.glb("plant-fiddle")).hexdigest()
+    assert out.stdout.split() == [here, *(s.content_hash for s in library.shapes())]
 
 
 @pytest.mark.unchecked
@@ -190,15 +189,12 @@ def test_a_sofa_has_its_seat_and_a_bed_its_mattress(library: BuiltInLibrary) -> 
     assert any(0.5 < z < 0.68 for z in above_floor(library, "bed-panel-oak"))
 
 
-def test_a_bookcase_has_its_shelves(library: BuiltInLibrary) -> None:
+def test_a_bookcase_has_its_shelves_and_a_closed_cabinet_no_reachable_inside(library: BuiltInLibrary) -> None:
     shape = library.shape("bookshelf-oak-four")
     inside = [s for s in shape.surfaces if s.interior]
     assert len(inside) == 4
     assert all(0.3 < s.clearance_m < 0.4 for s in inside)
     assert sum(not s.interior for s in shape.surfaces) == 1
-
-
-def test_closed_cabinets_have_no_reachable_inside(library: BuiltInLibrary) -> None:
     assert all(not s.interior for s in library.shape("dresser-white-four").surfaces)
 
 
@@ -207,8 +203,7 @@ def test_surfaces_survive_the_cache(tmp_path: Path) -> None:
     assert built_in_library(tmp_path).shape("tv-stand-oak-open") == first
 
 
-def test_records_know_other_names_and_the_faces_that_touch() -> None:
-    library = built_in_library()
+def test_records_know_other_names_and_the_faces_that_touch(library: BuiltInLibrary) -> None:
     by_category = {s.category: s for s in library.shapes()}
     assert "settee" in by_category["sofa"].synonyms or "couch" in by_category["sofa"].synonyms
     assert by_category["clock"].contact_faces[0] == "back"

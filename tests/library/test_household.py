@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import struct
 from collections import Counter, defaultdict
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from diorama_core.io.glb import read_glb
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture import (
     bathroom,
@@ -89,8 +88,7 @@ def test_glass_is_blended_and_lamps_shine_in_gltf(tmp_path: Path) -> None:
 
 
 def _materials(glb: bytes) -> dict[str, dict]:
-    length = struct.unpack("<I", glb[12:16])[0]
-    return {material["name"]: material for material in json.loads(glb[20 : 20 + length])["materials"]}
+    return {material["name"]: material for material in read_glb(glb)[0]["materials"]}
 
 
 def test_light_passes_through_glass_but_not_through_clay(tmp_path: Path) -> None:

@@ -21,12 +21,10 @@ from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
 NAMES = {c.name for c in CATEGORIES}
 
 
-def test_every_row_of_loose_words_speaks_of_known_kinds() -> None:
+def test_every_row_speaks_of_known_kinds_and_no_word_has_two() -> None:
     assert {kind for row in MEANINGS.values() for kind in row} <= NAMES
     assert set(LABELS.values()) <= NAMES | set(MEANINGS)
-
-
-def test_no_word_has_two_rows() -> None:
+    assert set(FREQUENCIES) <= NAMES
     assert not set(LABELS) & set(MEANINGS)
 
 
@@ -157,10 +155,6 @@ def test_slips_are_understood_and_near_names_come_first() -> None:
 def test_names_of_kinds_and_words_of_several() -> None:
     assert all(map(names_a_kind, ("chair", "couch", "a red armchair", "table")))
     assert not any(map(names_a_kind, ("stand", "seat", "furniture", "object", "???")))
-
-
-def test_every_row_speaks_of_known_kinds() -> None:
-    assert set(FREQUENCIES) <= NAMES
 
 
 def test_meanings_are_probabilities_that_include_the_word_itself() -> None:

@@ -54,9 +54,5 @@ def test_a_broken_record_is_a_library_error(text: str) -> None:
 
 
 def test_contact_faces_follow_where_objects_are_found() -> None:
-    assert [usual_contact_faces(m)[0] for m in ("floor", "surface", "wall", "ceiling")] == [
-        "bottom",
-        "bottom",
-        "back",
-        "top",
-    ]
+    faces = {mount: usual_contact_faces(mount)[0] for mount in ("floor", "surface", "wall", "ceiling")}
+    assert faces == {"floor": "bottom", "surface": "bottom", "wall": "back", "ceiling": "top"}

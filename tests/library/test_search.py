@@ -50,9 +50,8 @@ DESCRIPTIONS = (
 
 
 @pytest.fixture(scope="module")
-def library(tmp_path_factory: pytest.TempPathFactory) -> BuiltInLibrary:
-    folder: Path = tmp_path_factory.mktemp("cache")
-    return built_in_library(folder)
+def library() -> BuiltInLibrary:
+    return built_in_library()
 
 
 @pytest.mark.parametrize(
@@ -89,6 +88,7 @@ def test_no_words_list_everything_in_order(library: BuiltInLibrary) -> None:
 
 def test_nonsense_finds_nothing(library: BuiltInLibrary) -> None:
     assert search(library, "qwxzzk") == ()
+    assert kinds_described("qwxzzk of the") == {}
 
 
 def test_meaning_counts(library: BuiltInLibrary) -> None:
@@ -163,8 +163,7 @@ def test_colours_count_in_descriptions(library: BuiltInLibrary) -> None:
     assert any("white" in s.caption for s in found)
 
 
-def test_descriptions_find_their_kind() -> None:
-    library = built_in_library()
+def test_descriptions_find_their_kind(library: BuiltInLibrary) -> None:
     first = five = 0
     for text, kinds in DESCRIPTIONS:
         found = [s.category for s in find(library, text, 5).shapes]
@@ -191,7 +190,3 @@ def test_every_kind_is_found_by_its_own_definition() -> None:
 )  # fmt: skip
 def test_names_are_no_descriptions(text: str, is_one: bool) -> None:
     assert is_description(text) == is_one
-
-
-def test_nothing_is_described_by_nonsense() -> None:
-    assert kinds_described("qwxzzk of the") == {}

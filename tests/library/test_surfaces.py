@@ -6,10 +6,7 @@ import trimesh
 
 from diorama_core.library.record import SupportSurface
 from diorama_core.library.surfaces import support_surfaces
-
-
-def block(size: tuple[float, float, float], at: tuple[float, float, float]) -> trimesh.Trimesh:
-    return trimesh.creation.box(size, transform=trimesh.transformations.translation_matrix(at))
+from tests.library.ingest.models import block, table
 
 
 def area(surface: SupportSurface) -> float:
@@ -41,10 +38,8 @@ def test_outline_is_counter_clockwise_and_convex() -> None:
 
 
 def test_a_table_has_one_surface() -> None:
-    legs = [block((0.05, 0.05, 0.7), (sx * 0.35, sy * 0.55, 0.35)) for sx in (1, -1) for sy in (1, -1)]
-    table = trimesh.util.concatenate([block((0.8, 1.2, 0.03), (0, 0, 0.715)), *legs])
-    (top,) = support_surfaces(table)
-    assert top.height_m == pytest.approx(0.73, abs=1e-3)
+    (top,) = support_surfaces(table())
+    assert top.height_m == pytest.approx(0.74, abs=1e-3)
 
 
 def test_planks_with_gaps_are_one_surface() -> None:

@@ -11,12 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from diorama_core.library.thin_matter import BINS, derive_thin_matter, thin_matter
-
-
-def box(size: tuple[float, float, float], centre: tuple[float, float, float]) -> trimesh.Trimesh:
-    mesh = trimesh.creation.box(size)
-    mesh.apply_translation(centre)
-    return mesh
+from tests.library.ingest.models import block
 
 
 def thin(mesh: trimesh.Trimesh, axis: int) -> np.ndarray:
@@ -25,7 +20,7 @@ def thin(mesh: trimesh.Trimesh, axis: int) -> np.ndarray:
 
 def frame(axis: int) -> trimesh.Trimesh:
     """A board 1.2 long with an upright 6 cm thick at either end, turned so that it is long along an axis."""
-    parts = [box((1.2, 0.4, 0.04), (0, 0, 0.4)), *(box((0.06, 0.4, 0.4), (x, 0, 0.18)) for x in (-0.57, 0.57))]
+    parts = [block((1.2, 0.4, 0.04), (0, 0, 0.4)), *(block((0.06, 0.4, 0.4), (x, 0, 0.18)) for x in (-0.57, 0.57))]
     mesh = trimesh.util.concatenate(parts)
     turned = np.roll(np.eye(3), axis, axis=0)
     return trimesh.Trimesh(mesh.vertices @ turned.T, mesh.faces, process=False)
@@ -48,7 +43,7 @@ def test_a_shape_that_is_inside_out_says_the_same() -> None:
 
 def test_parts_that_touch_or_overlap_are_one() -> None:
     apart, touching, overlapping = (
-        trimesh.util.concatenate([box((wide, 1, 1), (0.2 * k, 0, 0)) for k in range(6)]) for wide in (0.1, 0.2, 0.25)
+        trimesh.util.concatenate([block((wide, 1, 1), (0.2 * k, 0, 0)) for k in range(6)]) for wide in (0.1, 0.2, 0.25)
     )
     assert thin(apart, 0).mean() == pytest.approx(6 * 0.1 / 1.1, abs=0.05)
     assert not thin(touching, 0).any()

@@ -43,6 +43,13 @@ def _shaken(network_: nn.Module) -> nn.Module:
     return network_.eval()
 
 
+def installed(folder: Path, network_id: str) -> ModelStore:
+    """A store with what a script has made."""
+    store = ModelStore(folder / "store")
+    assert store.add_folder(folder / "made") == (network_id,)
+    return store
+
+
 class _Block(nn.Module):
     def __init__(self) -> None:
         super().__init__()
@@ -92,8 +99,7 @@ def test_duoduoclips_shape_tower_is_rebuilt_from_a_checkpoint(
     settings = {"model": {"network": {"layers_threshold": alone, "base_name": "ViT-B-32"}}}
     torch.save({"state_dict": state, "hyper_parameters": settings, "epoch": 3}, tmp_path / "own.ckpt")
     convert_duoduoclip.main([str(tmp_path / "own.ckpt"), "-o", str(tmp_path / "made")])
-    store = ModelStore(tmp_path / "store")
-    assert store.add_folder(tmp_path / "made") == ("duoduoclip",)
+    store = installed(tmp_path, "duoduoclip")
     facade = DuoduoClip(store.path(network("duoduoclip"), "visual.onnx"), pool=SessionPool())
     for count in (1, 2, 5):
         views = [rng.integers(0, 255, (224, 224, 3)).astype(np.uint8) for _ in range(count)]
@@ -167,8 +173,7 @@ def test_openshapes_point_encoder_is_rebuilt_from_a_checkpoint(tmp_path: Path, r
     encoder = _shaken(_PointBert())
     torch.save({"state_dict": {f"module.{k}": v for k, v in encoder.state_dict().items()}}, tmp_path / "own.pt")
     convert_openshape.main([str(tmp_path / "own.pt"), "-o", str(tmp_path / "made")])
-    store = ModelStore(tmp_path / "store")
-    assert store.add_folder(tmp_path / "made") == ("openshape",)
+    store = installed(tmp_path, "openshape")
     facade = OpenShape(store.path(network("openshape"), "points.onnx"), pool=SessionPool())
     points, colours = rng.normal(size=(1500, 3)), rng.random((1500, 3))
     with torch.no_grad():
@@ -183,12 +188,9 @@ def test_openclip_is_converted_from_a_folder_with_its_weights_beside_the_graphs(
     model.save_pretrained(tmp_path / "own")
     tiny_networks.clip_tokenizer(tmp_path / "own" / "tokenizer.json")
     convert_openclip.main([str(tmp_path / "own"), "-o", str(tmp_path / "made")])
-    assert sorted(p.name for p in (tmp_path / "made" / "openclip-bigg14" / "visual").iterdir()) == [
-        "model.onnx",
-        "model.onnx_data",
-    ]
-    store = ModelStore(tmp_path / "store")
-    assert store.add_folder(tmp_path / "made") == ("openclip-bigg14",)
+    written = sorted(p.name for p in (tmp_path / "made" / "openclip-bigg14" / "visual").iterdir())
+    assert written == ["model.onnx", "model.onnx_data"]
+    store = installed(tmp_path, "openclip-bigg14")
     facade = network_stages.open_clip(store, network("openclip-bigg14"))
     picture = rng.integers(0, 255, (300, 240, 3)).astype(np.uint8)
     with torch.no_grad():
@@ -252,8 +254,7 @@ def test_gigaposes_scale_network_is_rebuilt_from_a_checkpoint(
     state["ae_net.dinov2.cls_token"] = torch.zeros(1)  # the first network's, which is not taken
     torch.save({"state_dict": state}, tmp_path / "own.ckpt")
     convert_gigapose.main([str(tmp_path / "own.ckpt"), "-o", str(tmp_path / "made")])
-    store = ModelStore(tmp_path / "store")
-    assert store.add_folder(tmp_path / "made") == ("gigapose-scale",)
+    store = installed(tmp_path, "gigapose-scale")
     graphs = (store.path(network("gigapose-scale"), name) for name in ("features.onnx", "regressor.onnx"))
     facade = GigaPoseScale(*graphs, pool=SessionPool())
     crops = [rng.integers(0, 255, (224, 224, 3)).astype(np.uint8) for _ in range(2)]
@@ -265,7 +266,9 @@ def test_gigaposes_scale_network_is_rebuilt_from_a_checkpoint(
         np.testing.assert_allclose(np.stack([template, photo]), expected.numpy(), atol=1e-4)
         pairs = torch.cat([expected[1, :, 8, 7], expected[0, :, 4, 3]])[None]
         scale, turn = regressor.scale_predictor(pairs)[0, 0], regressor.inplane_predictor(pairs)[0]
-    found = facade.turns(template, photo, np.array([[3, 4]]), np.array([[7, 8]]))
+    cells, others = np.array([[3, 4]]), np.array([[7, 8]])
+    found = facade.turns(template, photo, cells, others)
+    assert len(facade.turns(template, photo, cells[:0], others[:0]).scale) == 0
     assert found.scale[0] == pytest.approx(float(scale), abs=1e-4)
     assert found.angle_rad[0] == pytest.approx(float(torch.atan2(turn[1], turn[0])), abs=1e-4)
 

@@ -142,7 +142,6 @@ def test_metric3d_undoes_padding_scale_and_canonical_camera(tmp_path: Path, size
     )
 
 
-HEIGHT, WIDTH = 96, 128
 FOCAL = 110.0
 WALL_M = 4.0
 CAMERA = Intrinsics(WIDTH, HEIGHT, FOCAL, FOCAL, WIDTH / 2, HEIGHT / 2)

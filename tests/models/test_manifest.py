@@ -16,12 +16,7 @@ def test_files_in_half_precision_stand_for_the_full_ones() -> None:
     assert "owlv2-base-fp16" in [n.id for n in halves]
     for half in halves:
         full = network(half.half_of)
-        assert (half.role, half.repo, half.revision, half.licence) == (
-            full.role,
-            full.repo,
-            full.revision,
-            full.licence,
-        )
+        assert all(getattr(half, name) == getattr(full, name) for name in ("role", "repo", "revision", "licence"))
         assert half.size_bytes < full.size_bytes
         assert not half.tiers, "sets name the full ones"
     ids = [n.id for n in half_precision_networks(networks_of("default"))]

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
-import pytest
-import torch
 
-from diorama_core.models.onnx_export import write_graph
-from diorama_core.models.openshape import NEIGHBOURS, PATCHES, RADIUS, OpenShape, patches_of
-from diorama_core.models.runtime import SessionPool
+from diorama_core.models.openshape import NEIGHBOURS, PATCHES, RADIUS, patches_of
 
 
 def points_of(rng: np.random.Generator, count: int = 3000) -> tuple[np.ndarray, np.ndarray]:
@@ -49,15 +43,3 @@ def test_few_points_are_seen_several_times() -> None:
     centres, patches = patches_of(np.eye(3), np.zeros((3, 3)))
     assert centres.shape == (PATCHES, 3)
     assert len(np.unique(patches.reshape(-1, 9), axis=0)) == 3
-
-
-def test_a_shape_is_one_vector_of_length_one(tmp_path: Path, rng: np.random.Generator) -> None:
-    class Mean(torch.nn.Module):
-        def forward(self, centres: torch.Tensor, patches: torch.Tensor) -> torch.Tensor:
-            return torch.cat([centres.mean(dim=1), patches.mean(dim=(1, 2))], dim=1)
-
-    example = (torch.zeros(1, PATCHES, 3), torch.zeros(1, PATCHES, NEIGHBOURS, 9))
-    graph = write_graph(Mean(), example, tmp_path / "points.onnx", ["centres", "patches"], ["embedding"])
-    vector = OpenShape(graph, pool=SessionPool()).shape(*points_of(rng))
-    assert vector.shape == (12,)
-    assert np.linalg.norm(vector) == pytest.approx(1.0, abs=1e-5)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -13,6 +14,7 @@ from diorama_core.models.clip import DuoduoClip, OpenClip
 from diorama_core.models.runtime import SessionPool
 from diorama_core.progress import Progress
 from diorama_core.render.views import StudioView, render_shape
+from diorama_core.retrieval import joint
 from diorama_core.retrieval.appearance_similarity import NEUTRAL, EmbeddedSimilarity, ObjectCrop
 from diorama_core.retrieval.hierarchical import HierarchicalRetrieval
 from diorama_core.retrieval.joint import ClipEmbedding, JointSimilarity
@@ -61,6 +63,16 @@ def test_forms_of_shapes_agree_whatever_their_size_and_colours(tmp_path: Path) -
     assert similarity.form_agreement(chair, chair) == pytest.approx(1.0)
     assert similarity.form_agreement(chair, sofa) < similarity.form_agreement(low, sofa) < 0.99
     assert similarity.form_agreement(low, sofa) == pytest.approx(similarity.form_agreement(sofa, low))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _views_rendered_once() -> Iterator[None]:
+    """The studio's pictures of a shape are the same in every test here."""
+    render = joint.studio_views
+    rendered = cache(lambda shape_id: render(LIBRARY, LIBRARY.shape(shape_id)))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(joint, "studio_views", lambda library, shape: rendered(shape.id))
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -22,18 +22,16 @@ def ranked(room: Room, stage: HierarchicalRetrieval = STAGE):
     return stage.retrieve(room.inputs, room.objects, room.geometry, Progress())
 
 
-def test_the_true_shape_is_found_among_its_kind() -> None:
+def test_the_true_shape_is_found_among_its_kind_and_scores_fall() -> None:
     for seed in range(3):
         room = random_room(seed)
-        for found, index in zip(ranked(room), room.seen, strict=True):
-            assert found.ranked[0][0] == room.placed[index].shape_id
-
-
-def test_scores_are_finite_and_fall() -> None:
-    for found in ranked(random_room(3)):
-        scores = [score for _, score in found.ranked]
-        assert scores == sorted(scores, reverse=True)
-        assert all(0.0 < s <= 1.0 for s in scores)
+        found = ranked(room)
+        for of_one, index in zip(found, room.seen, strict=True):
+            assert of_one.ranked[0][0] == room.placed[index].shape_id
+            scores = [score for _, score in of_one.ranked]
+            assert scores == sorted(scores, reverse=True)
+            assert all(0.0 < s <= 1.0 for s in scores)
+    assert ranked(room) == found, "the same input gives the same ranking"
 
 
 def test_no_more_than_asked_for_are_retained() -> None:
@@ -92,11 +90,6 @@ def test_empty_and_one_pixel_masks_are_survived() -> None:
         objects = tuple(replace(o, mask=mask) for o in room.objects)
         found = STAGE.retrieve(room.inputs, objects, room.geometry, Progress())
         assert all(np.isfinite([s for _, s in f.ranked]).all() and f.ranked for f in found)
-
-
-def test_the_same_input_gives_the_same_ranking() -> None:
-    room = random_room(5)
-    assert ranked(room) == ranked(room)
 
 
 def test_its_name_is_short_and_changes_with_the_library() -> None:

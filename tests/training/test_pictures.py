@@ -8,13 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diorama_core.errors import Cancelled, InputError
+from diorama_core.errors import Cancelled
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.form import MEASURED
 from diorama_core.progress import CancelToken, Progress, ProgressEvent
 from diorama_core.training import pictures
-from diorama_core.training.picture_files import BoxStatistics, PictureFiles
 from diorama_core.training.pictures import (
+    BoxStatistics,
+    PictureFiles,
     category_names,
     count_pictures,
     make_files,
@@ -75,11 +76,6 @@ def test_statistics_draw_boxes_of_the_asked_proportions(made: Path) -> None:
     drawn = statistics.draw(int(np.argmin(statistics.counts)), (2.0, 1.0), np.random.default_rng(0))
     assert drawn[5] == pytest.approx(np.log(2.0))
     assert drawn[3] - drawn[4] == pytest.approx(np.log(2.0))
-
-
-def test_a_folder_without_pictures_is_one_clear_line(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="training pictures"):
-        PictureFiles.of(tmp_path)
 
 
 def test_what_is_there_is_not_made_again(tmp_path: Path) -> None:

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diorama_core.errors import InputError
 from diorama_core.models.images import CROP_SIDE, MARGIN
 from diorama_core.training import shape_views
 from diorama_core.training.shape_views import ShapeViewFiles, ShapeViews, crop_before, make_shape_views, read_shape
@@ -26,42 +25,37 @@ def files(folder: Path, width: int = 30, height: int = 60) -> ShapeViewFiles:
     return ShapeViewFiles.of(folder)
 
 
+Crop = tuple[np.ndarray, tuple[float, float], ShapeViews]
+
+
+def crops(folder: Path, monkeypatch: pytest.MonkeyPatch, *, hidden: float = 0.0, cut: float = 0.0) -> list[Crop]:
+    """Ten crops of the shape before black, all or none of them hidden or cut."""
+    monkeypatch.setattr(shape_views, "HIDDEN", hidden)
+    monkeypatch.setattr(shape_views, "CUT", cut)
+    drawn = files(folder)
+    return [crop_before(BLACK, drawn, np.random.default_rng(seed)) for seed in range(10)]
+
+
 def test_the_shape_fills_its_box_and_the_margin_is_background(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shape_views, "HIDDEN", 0.0)
-    monkeypatch.setattr(shape_views, "CUT", 0.0)
-    drawn, expected = files(tmp_path), CROP_SIDE / (1 + 2 * MARGIN)
-    for seed in range(10):
-        crop, sides, views = crop_before(BLACK, drawn, np.random.default_rng(seed))
+    for crop, sides, views in crops(tmp_path, monkeypatch):
         rows = np.flatnonzero((crop > 128).any(axis=(1, 2)))
-        assert np.ptp(rows) == pytest.approx(expected, rel=0.2)
+        assert np.ptp(rows) == pytest.approx(CROP_SIDE / (1 + 2 * MARGIN), rel=0.2)
         assert sides[1] == 1.0
         assert 0.25 < sides[0] < 0.85
         assert views.category == 2
 
 
 def test_what_the_border_cuts_is_grey_beyond_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shape_views, "HIDDEN", 0.0)
-    monkeypatch.setattr(shape_views, "CUT", 1.0)
-    drawn = files(tmp_path)
-    for seed in range(10):
-        crop, _, _ = crop_before(BLACK, drawn, np.random.default_rng(seed))
+    for crop, _, _ in crops(tmp_path, monkeypatch, cut=1.0):
         edges = (crop[:, 0], crop[:, -1], crop[-1])
         assert any((edge == shape_views.FILL).all() for edge in edges)
 
 
 def test_another_shape_may_stand_before_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn = files(tmp_path)
-    covered = []
-    for hidden in (0.0, 1.0):
-        monkeypatch.setattr(shape_views, "HIDDEN", hidden)
-        monkeypatch.setattr(shape_views, "CUT", 0.0)
-        covered.append([(crop_before(BLACK, drawn, np.random.default_rng(k))[0] > 128).sum() for k in range(10)])
-    assert np.sum(covered[1]) > np.sum(covered[0])
-
-
-def test_a_folder_without_shapes_is_one_clear_line(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="training shapes"):
-        ShapeViewFiles.of(tmp_path)
+    free, covered = (
+        sum((crop > 128).sum() for crop, _, _ in crops(tmp_path, monkeypatch, hidden=hidden)) for hidden in (0.0, 1.0)
+    )
+    assert covered > free
 
 
 def test_every_shape_is_rendered_once(tmp_path: Path) -> None:

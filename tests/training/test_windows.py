@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diorama_core.errors import InputError
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.models.outliner import MARGIN, SIDE
 from diorama_core.training import windows
@@ -30,8 +29,3 @@ def test_objects_of_a_room_fill_the_middle_of_their_windows(tmp_path: Path, monk
     assert seen.shape == (4, 4, SIDE, SIDE)
     assert share.shape == (4, SIDE, SIDE)
     assert 0.0 <= float(seen.min()) <= float(seen.max()) <= 1.0
-
-
-def test_a_folder_without_windows_is_one_clear_line(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="training windows"):
-        WindowFiles.of(tmp_path)

@@ -11,7 +11,7 @@ from diorama_core.errors import InputError
 from diorama_core.library import taxonomy
 from diorama_core.library.ingest.given import Given, axis_name, axis_vector
 from diorama_core.library.ingest.relief import relief, symmetry_fold
-from diorama_core.library.ingest.repair import Repaired
+from diorama_core.library.ingest.repair import whole_of
 from diorama_core.library.ingest.shaping import pack_shape
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.part_notes import transform
@@ -51,7 +51,7 @@ def correct(
     T = np.eye(4)
     T[:3, :3] = R_to_from * scale
     meshes = _turn_parts(library.parts(shape_id), T)
-    whole = Repaired(tuple(meshes), ()).whole
+    whole = whole_of(meshes)
     name = shape.category if category is None else taxonomy.resolve(category).category.name
     record = replace(
         shape,
@@ -67,8 +67,7 @@ def _turn(up: str, front: str | None) -> np.ndarray:
     """Rotation whose rows are the new axes in the old frame."""
     z = axis_vector(up)
     if front is None:
-        axis = next(a for a in ("+x", "-z" if up == "+x" else "+z", "+y") if a[1] != up[1])
-        front = axis
+        front = next(a for a in ("+x", "-z" if up == "+x" else "+z", "+y") if a[1] != up[1])
     x = axis_vector(front)
     if x @ z:
         raise InputError(f"up {up} and front {front} lie along one axis; they must be at right angles")

@@ -8,7 +8,6 @@ from __future__ import annotations
 import io
 import re
 import struct
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,20 +20,8 @@ from diorama_core.errors import LibraryError, UnavailableError
 from diorama_core.library.ingest.references import IMAGE_FORMATS, References
 
 
-@dataclass(frozen=True)
-class FbxModel:
-    """An FBX file's content, +Y up."""
-
-    scene: trimesh.Scene
-    names: tuple[str, ...]
-    unit_m: float
-    """Metres in one unit, as the file declares."""
-    up: str = "+y"
-    front: str = "+z"
-
-
-def read_fbx(path: Path, data: bytes, references: References) -> FbxModel:
-    """Read an FBX file.
+def read_fbx(path: Path, data: bytes, references: References) -> tuple[trimesh.Scene, tuple[str, ...], float]:
+    """The scene of an FBX file, +Y up, the names in it, and metres in one unit, as the file declares.
 
     Raises:
         UnavailableError: when the importer is not installed.
@@ -62,7 +49,7 @@ def read_fbx(path: Path, data: bytes, references: References) -> FbxModel:
             scene.add_geometry(_mesh(imported.meshes[index], materials), transform=T_file_node)
         waiting += [(child, T_file_node) for child in reversed(node.children)]
     names += [str(row.get("NAME", "")) for row in imported.materials]
-    return FbxModel(scene, tuple(n for n in names if n and n != "RootNode"), unit_scale_m(data))
+    return scene, tuple(n for n in names if n and n != "RootNode"), unit_scale_m(data)
 
 
 def unit_scale_m(data: bytes) -> float:

@@ -21,34 +21,10 @@ from diorama_core.library.ingest.shaping import ModelSource
 REVISION = 2
 """Version of what ingestion makes of a file: raise it when results change; a repeated run takes files in anew."""
 MAX_TABLE_BYTES = 64_000_000
-BESIDE = frozenset(
-    [
-        ".mtl",
-        ".bin",
-        ".png",
-        ".jpg",
-        ".jpeg",
-        ".tga",
-        ".bmp",
-        ".webp",
-        ".tif",
-        ".tiff",
-        ".gif",
-        ".dds",
-        ".ktx2",
-        ".txt",
-        ".md",
-        ".csv",
-        ".json",
-        ".html",
-        ".pdf",
-        ".url",
-        ".psd",
-        ".license",
-        ".py",
-        ".xml",
-    ]
-)
+BESIDE = frozenset({
+    ".mtl", ".bin", ".png", ".jpg", ".jpeg", ".tga", ".bmp", ".webp", ".tif", ".tiff", ".gif", ".dds", ".ktx2", ".txt",
+    ".md", ".csv", ".json", ".html", ".pdf", ".url", ".psd", ".license", ".py", ".xml",
+})  # fmt: skip
 """What lies beside models: pictures and texts, which nobody takes for a model."""
 _COLUMNS = ("file", "up", "front", "unit", "category", "caption", "licence")
 

@@ -43,9 +43,11 @@ def pack_glb(data: bytes, references: References, limits: Limits) -> bytes:
     Raises:
         LibraryError: with the reason, when the file is malformed, hostile, too large or needs a missing decoder.
     """
-    document, binary = _container(data, limits)
+    document, binary = container(data, limits)
     try:
-        _check_asset(document)
+        version = str(document.get("asset", {}).get("version", ""))
+        if not version.startswith("2"):
+            raise LibraryError(f"glTF version {quote(version)} is not supported; save it as glTF 2.0")
         buffers = [_buffer(row, k, binary, references) for k, row in enumerate(_rows(document, "buffers"))]
         views = [_view(row, buffers, limits) for row in _rows(document, "bufferViews")]
         undo_draco(document, views, limits)
@@ -59,14 +61,14 @@ def pack_glb(data: bytes, references: References, limits: Limits) -> bytes:
 
 def node_names(glb: bytes) -> tuple[str, ...]:
     """Names that the author gave to scenes, nodes, meshes and materials, in the file's order."""
-    document, _ = _container(glb, Limits())
+    document, _ = container(glb, Limits())
     rows = [row for kind in ("scenes", "nodes", "meshes", "materials") for row in document.get(kind, [])]
     return tuple(str(row["name"]) for row in rows if isinstance(row, dict) and row.get("name"))
 
 
 def frame_of_own(glb: bytes) -> OwnFrame | None:
     """The frame of the one object that Diorama wrote into a file; None where there is none."""
-    return own_frame(_container(glb, Limits())[0])
+    return own_frame(container(glb, Limits())[0])
 
 
 def container(data: bytes, limits: Limits) -> tuple[Json, bytes | None]:
@@ -75,11 +77,6 @@ def container(data: bytes, limits: Limits) -> tuple[Json, bytes | None]:
     Raises:
         LibraryError: when the container or its JSON is malformed or too large.
     """
-    return _container(data, limits)
-
-
-def _container(data: bytes, limits: Limits) -> tuple[Json, bytes | None]:
-    """The JSON document and the binary chunk."""
     text, binary = data, None
     if is_glb(data):
         try:
@@ -99,12 +96,6 @@ def _rows(document: Json, name: str) -> list[Json]:
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise LibraryError(f"malformed glTF ('{name}' is no list of objects)")
     return rows
-
-
-def _check_asset(document: Json) -> None:
-    version = str(document.get("asset", {}).get("version", ""))
-    if not version.startswith("2"):
-        raise LibraryError(f"glTF version {quote(version)} is not supported; save it as glTF 2.0")
 
 
 def _buffer(row: Json, number: int, binary: bytes | None, references: References) -> bytes:
@@ -232,15 +223,18 @@ def _repack(document: Json, views: list[bytes], references: References) -> bytes
 
 def _unscale(accessor: Json, rows: list[Json], views: list[bytes]) -> None:
     """Turn an accessor of scaled integers into one of floats, which every loader reads alike."""
-    kind, items = np.dtype(_COMPONENTS[accessor["componentType"]]), _ITEMS[accessor["type"]]
-    at = accessor["bufferView"]
-    stride = rows[at].get("byteStride", kind.itemsize * items)
-    count, start = accessor["count"], accessor.get("byteOffset", 0)
-    raw = np.ndarray((count, items), kind, views[at], start, (stride, kind.itemsize))
-    scaled = np.maximum(raw.astype("<f4") / np.iinfo(kind).max, -1.0).astype("<f4")
+    raw = _numbers(accessor, _ITEMS[accessor["type"]], rows, views)
+    scaled = np.maximum(raw.astype("<f4") / np.iinfo(raw.dtype).max, -1.0).astype("<f4")
     accessor |= {"componentType": 5126, "bufferView": len(views), "byteOffset": 0, "normalized": False}
     views.append(scaled.tobytes())
     rows.append({})
+
+
+def _numbers(accessor: Json, items: int, rows: list[Json], views: list[bytes]) -> np.ndarray:
+    """The first numbers of every item of an accessor, as they are stored."""
+    kind, at = np.dtype(_COMPONENTS[accessor["componentType"]]), accessor["bufferView"]
+    strides = (rows[at].get("byteStride", kind.itemsize * items), kind.itemsize)
+    return np.ndarray((accessor["count"], items), kind, views[at], accessor.get("byteOffset", 0), strides)
 
 
 def _image_bytes(image: Json, views: list[bytes], references: References) -> bytes | None:
@@ -316,14 +310,9 @@ def _place(document: Json, rows: list[Json], views: list[bytes], source: int, tr
     accessor = document["accessors"][source]
     if accessor["componentType"] != 5126 or "bufferView" not in accessor:
         return source
-    row = rows[accessor["bufferView"]]
-    stride = row.get("byteStride", 8)
-    raw = np.ndarray(
-        (accessor["count"], 2), "<f4", views[accessor["bufferView"]], accessor.get("byteOffset", 0), (stride, 4)
-    )
     angle = float(transform.get("rotation", 0.0))
     c, s = np.cos(angle), np.sin(angle)
-    scaled = raw * np.asarray(transform.get("scale", [1.0, 1.0]), float)
+    scaled = _numbers(accessor, 2, rows, views) * np.asarray(transform.get("scale", [1.0, 1.0]), float)
     turned = scaled @ np.array([[c, -s], [s, c]])
     moved = turned + np.asarray(transform.get("offset", [0.0, 0.0]), float)
     views.append(moved.astype("<f4").tobytes())

@@ -60,9 +60,12 @@ def load_known_shapes(
     reliefs_by_key = _read(path)
     missing = [s for s in shapes if _key(s) not in reliefs_by_key]
     if missing:
-        reliefs_by_key |= _take(library, missing, on_step)
+        for count, shape in enumerate(missing, start=1):
+            reliefs_by_key[_key(shape)] = np.round(relief(library.mesh(shape.id)) * 255).astype(np.uint8)
+            on_step(count / len(missing))
         reliefs_by_key = {_key(s): reliefs_by_key[_key(s)] for s in shapes}
-        _write(path, reliefs_by_key)
+        stored = {"keys": np.array(list(reliefs_by_key)), "reliefs": np.stack(list(reliefs_by_key.values()))}
+        write_arrays(path, stored)
     reliefs = np.stack([reliefs_by_key[_key(s)] for s in shapes])
     return KnownShapes(categories, relief_features(reliefs.astype(np.float32) / 255.0), sizes)
 
@@ -89,23 +92,9 @@ def _spread(shapes: Sequence[Shape]) -> list[Shape]:
     return [kind[row] for kind, some in zip(kinds.values(), rows, strict=True) for row in some]
 
 
-def _take(
-    library: ShapeLibrary, shapes: Sequence[Shape], on_step: Callable[[float], None]
-) -> dict[str, UInt8[np.ndarray, "3 2 side side"]]:
-    reliefs = {}
-    for count, shape in enumerate(shapes, start=1):
-        reliefs[_key(shape)] = np.round(relief(library.mesh(shape.id)) * 255).astype(np.uint8)
-        on_step(count / len(shapes))
-    return reliefs
-
-
 def _read(path: Path) -> dict[str, UInt8[np.ndarray, "3 2 side side"]]:
     """Reliefs by the keys of their shapes; none where there is no such file, or a damaged one."""
     stored = read_arrays(path, "keys", "reliefs")
     if stored is None or len(stored[0]) != len(stored[1]):
         return {}
     return dict(zip(stored[0].tolist(), stored[1], strict=True))
-
-
-def _write(path: Path, reliefs: dict[str, UInt8[np.ndarray, "3 2 side side"]]) -> None:
-    write_arrays(path, {"keys": np.array(list(reliefs)), "reliefs": np.stack(list(reliefs.values()))})

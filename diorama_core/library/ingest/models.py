@@ -120,9 +120,10 @@ def _read_plain(convention: Convention, kind: str) -> Callable[[Path, References
 
 
 def _read_fbx(path: Path, references: References, limits: Limits) -> RawModel:
-    model = fbx.read_fbx(path, _content(path, limits), references)
-    convention = Convention("FBX", {model.up: 0.9}, {model.front: 0.5}, {model.unit_m: 0.8})
-    return RawModel(model.scene, model.names, convention, tuple(references.warnings))
+    scene, names, unit_m = fbx.read_fbx(path, _content(path, limits), references)
+    return RawModel(
+        scene, names, Convention("FBX", {"+y": 0.9}, {"+z": 0.5}, {unit_m: 0.8}), tuple(references.warnings)
+    )
 
 
 def _read_dae(path: Path, references: References, limits: Limits) -> RawModel:

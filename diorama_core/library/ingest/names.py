@@ -9,133 +9,33 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
 
 from diorama_core.library.labels import understand_label
-from diorama_core.library.taxonomy import CATEGORIES, UNKNOWN
+from diorama_core.library.taxonomy import UNKNOWN, categories_by_word
 
 _SAME = {"television": ("tv",), "bed": ("bedside",), "tv": ("television",), "fridge": ("refrigerator",)}
 """Words that stand for one another inside compound names."""
-_EMPTY = frozenset(
-    [
-        "the",
-        "a",
-        "an",
-        "of",
-        "and",
-        "with",
-        "model",
-        "models",
-        "mesh",
-        "object",
-        "obj",
-        "default",
-        "normalized",
-        "untitled",
-        "scene",
-        "root",
-        "node",
-        "group",
-        "geometry",
-        "sm",
-        "mat",
-        "material",
-        "lod",
-        "low",
-        "high",
-        "poly",
-        "final",
-        "new",
-        "copy",
-        "export",
-        "asset",
-        "assets",
-        "glb",
-        "gltf",
-        "fbx",
-        "set",
-    ]
-)
-_SOLIDS = frozenset(
-    [
-        "cube",
-        "cylinder",
-        "sphere",
-        "icosphere",
-        "plane",
-        "cone",
-        "torus",
-        "circle",
-        "capsule",
-        "prim",
-        "primitive",
-        "polysurface",
-        "pcube",
-        "pcylinder",
-        "psphere",
-        "pplane",
-        "nurbs",
-        "curve",
-        "extrude",
-        "loft",
-        "chamferbox",
-        "rectangle",
-        "line",
-        "solid",
-        "shape",
-        "xform",
-        "instance",
-        "component",
-        "world",
-        "empty",
-        "null",
-        "transform",
-    ]
-)
+_EMPTY = frozenset({
+    "the", "a", "an", "of", "and", "with", "model", "models", "mesh", "object", "obj", "default", "normalized",
+    "untitled", "scene", "root", "node", "group", "geometry", "sm", "mat", "material", "lod", "low", "high", "poly",
+    "final", "new", "copy", "export", "asset", "assets", "glb", "gltf", "fbx", "set",
+})  # fmt: skip
+_SOLIDS = frozenset({
+    "cube", "cylinder", "sphere", "icosphere", "plane", "cone", "torus", "circle", "capsule", "prim", "primitive",
+    "polysurface", "pcube", "pcylinder", "psphere", "pplane", "nurbs", "curve", "extrude", "loft", "chamferbox",
+    "rectangle", "line", "solid", "shape", "xform", "instance", "component", "world", "empty", "null", "transform",
+})  # fmt: skip
 """What programs call a thing that nobody named: `Cube.003`, `Cylinder12`."""
 _NUMBERED_BOX = re.compile(r"^box[_.]?\d{2,}$", re.IGNORECASE)
 MANY_WORDS, ONE_WORD, ELSEWHERE = 0.0, -1.2, -1.0
 """Logarithms of how much less a single word says than a compound, and a folder or a part than the file's own name."""
 SURE, NEARLY, OF_A_PART = 0.99, 0.75, 0.5
 """How sure names make a kind at most: a known name of the file or its folder, one that is only near, one of a part."""
-NOTHING = frozenset(
-    [
-        "mannequin",
-        "figure",
-        "figurine",
-        "person",
-        "people",
-        "human",
-        "man",
-        "woman",
-        "boy",
-        "girl",
-        "child",
-        "character",
-        "body",
-        "torso",
-        "skeleton",
-        "avatar",
-        "soldier",
-        "zombie",
-        "animal",
-        "horse",
-        "tree",
-        "car",
-        "truck",
-        "weapon",
-        "staircase",
-        "stairs",
-        "stair",
-        "steps",
-        "railing",
-        "banister",
-        "handrail",
-        "balustrade",
-        "column",
-        "pillar",
-    ]
-)
+NOTHING = frozenset({
+    "mannequin", "figure", "figurine", "person", "people", "human", "man", "woman", "boy", "girl", "child", "character",
+    "body", "torso", "skeleton", "avatar", "soldier", "zombie", "animal", "horse", "tree", "car", "truck", "weapon",
+    "staircase", "stairs", "stair", "steps", "railing", "banister", "handrail", "balustrade", "column", "pillar",
+})  # fmt: skip
 """Whoever is called so furnishes no room, whatever its other words are: a mannequin's chest is no furniture."""
 
 
@@ -201,7 +101,8 @@ def _kinds_in(words: tuple[str, ...]) -> dict[str, float]:
     words = words[:8]
     if NOTHING.intersection(words):
         return {UNKNOWN.name: MANY_WORDS}
-    known = {p: _table()[p] for p in _phrases(words) if p in _table()}
+    kinds_of = {p: categories_by_word().get(p, UNKNOWN) for p in _phrases(words)}
+    known = {phrase: kind.name for phrase, kind in kinds_of.items() if kind is not UNKNOWN}
     used = {word for phrase in known if " " in phrase for word in phrase.split()}
     kinds: dict[str, float] = {}
     for phrase, category in known.items():
@@ -231,17 +132,3 @@ def _singulars(phrase: str) -> Iterator[str]:
         yield phrase[:-2]
     if phrase.endswith("ves"):
         yield phrase[:-3] + "f"
-
-
-@cache
-def _table() -> dict[str, str]:
-    table = {_plain(c.name): c.name for c in CATEGORIES if c is not UNKNOWN}
-    for category in CATEGORIES:
-        if category is not UNKNOWN:
-            for word in category.synonyms:
-                table.setdefault(_plain(word), category.name)
-    return table
-
-
-def _plain(word: str) -> str:
-    return re.sub(r"[^a-z0-9]+", " ", word.lower()).strip()

@@ -95,12 +95,14 @@ class Repaired:
     @property
     def whole(self) -> trimesh.Trimesh:
         """Geometry only, one mesh."""
-        counts = np.cumsum([0, *(len(m.vertices) for m in self.meshes)])
-        return trimesh.Trimesh(
-            np.concatenate([m.vertices for m in self.meshes]),
-            np.concatenate([m.faces + c for m, c in zip(self.meshes, counts, strict=False)]),
-            process=False,
-        )
+        return whole_of(self.meshes)
+
+
+def whole_of(meshes: Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
+    """The geometry of several meshes as one."""
+    counts = np.cumsum([0, *(len(m.vertices) for m in meshes)])
+    faces = np.concatenate([m.faces + c for m, c in zip(meshes, counts, strict=False)])
+    return trimesh.Trimesh(np.concatenate([m.vertices for m in meshes]), faces, process=False)
 
 
 def repair(scene: trimesh.Scene, limits: Limits) -> Repaired:
@@ -140,12 +142,12 @@ def _repair(scene: trimesh.Scene, limits: Limits) -> Repaired:
             meshes.append(made)
     if not meshes:
         raise LibraryError("no triangle with area is in it")
-    whole = Repaired(tuple(meshes), ())
-    if not (whole.whole.extents > 0).any() or np.sort(whole.whole.extents)[1] < 1e-9:
+    whole = whole_of(meshes)
+    if not (whole.extents > 0).any() or np.sort(whole.extents)[1] < 1e-9:
         raise LibraryError("it has no extent")
     thick, was_flat = with_thickness(meshes)
     notes += [f"it was flat and got a thickness of {THICKNESS:.1%} of its longest side"] if was_flat else []
-    notes += _openness(whole.whole)
+    notes += _openness(whole)
     return Repaired(thick, tuple(dict.fromkeys(notes)))
 
 

@@ -24,7 +24,7 @@ from diorama_core.library.ingest.limits import DEFAULT_LIMITS, Limits
 from diorama_core.library.ingest.models import RawModel, read_model
 from diorama_core.library.ingest.names import NameEvidence, name_evidence, words_of
 from diorama_core.library.ingest.relief import relief, symmetry_fold, turn
-from diorama_core.library.ingest.repair import Repaired, repair
+from diorama_core.library.ingest.repair import Repaired, repair, whole_of
 from diorama_core.library.ingest.sink import Ingested
 from diorama_core.library.part_notes import PartNotes, notes_of, transform
 from diorama_core.library.record import Guess, Shape, ShapeLibrary, SymmetryFold, usual_contact_faces
@@ -167,7 +167,7 @@ def ingest_model(
     if not TINY_M <= size <= HUGE_M:
         raise LibraryError(f"it would be {size:.3g} m large; give its unit with --unit")
     meshes = _canonical(model, frame)
-    fold = symmetry_fold(_whole(meshes), turn(pictures, frame.R_shape_file))
+    fold = symmetry_fold(whole_of(meshes), turn(pictures, frame.R_shape_file))
     record = _record(source, given, frame, fold)
     return pack_shape(record, meshes, painter, source.key, (*remarks, *model.warnings))
 
@@ -210,7 +210,7 @@ def pack_shape(
     glb = scene.export(file_type="glb", include_normals=True)
     if not isinstance(glb, bytes):
         raise LibraryError("the shape could not be written as GLB")
-    whole = _whole(meshes)
+    whole = whole_of(meshes)
     x, y, z = (float(round(e, 6)) for e in whole.extents)
     record = replace(
         record,
@@ -247,22 +247,18 @@ def _canonical(model: Repaired, frame: Frame) -> list[trimesh.Trimesh]:
 
 
 def _join(group: Sequence[trimesh.Trimesh], T: Float[np.ndarray, "4 4"]) -> trimesh.Trimesh:
-    counts = np.cumsum([0, *(len(m.vertices) for m in group)])
+    whole = whole_of(group)
     notes, visual = notes_of(group[0]), group[0].visual
     noted = {} if notes is None else {part_notes.KEY: notes.transform(T).as_json()}
     if isinstance(visual, TextureVisuals):
         visual = TextureVisuals(uv=np.concatenate([m.visual.uv for m in group]), material=visual.material)
     return trimesh.Trimesh(
-        np.concatenate([m.vertices for m in group]) @ T[:3, :3].T + T[:3, 3],
-        np.concatenate([m.faces + c for m, c in zip(group, counts, strict=False)]),
+        whole.vertices @ T[:3, :3].T + T[:3, 3],
+        whole.faces,
         visual=visual,
         process=False,
         metadata={"name": group[0].metadata.get("name", "")} | noted,
     )
-
-
-def _whole(meshes: Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
-    return Repaired(tuple(meshes), ()).whole
 
 
 def _record(source: ModelSource, given: Given, frame: Frame, fold: SymmetryFold) -> Shape:

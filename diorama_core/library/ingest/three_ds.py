@@ -25,7 +25,8 @@ def read_3ds(data: bytes) -> tuple[trimesh.Scene, tuple[str, ...]]:
         LibraryError: it is no such file, or cut off.
     """
     try:
-        editor = next(body for kind, body in _chunks(_only(data, MAIN)) if kind == EDITOR)
+        main = next(body for kind, body in _chunks(data) if kind == MAIN)
+        editor = next(body for kind, body in _chunks(main) if kind == EDITOR)
         colours = dict(_material(body) for kind, body in _chunks(editor) if kind == MATERIAL)
         scene, names = trimesh.Scene(), []
         for kind, body in _chunks(editor):
@@ -38,10 +39,6 @@ def read_3ds(data: bytes) -> tuple[trimesh.Scene, tuple[str, ...]]:
         return scene, tuple(names)
     except (StopIteration, struct.error, ValueError, IndexError) as error:
         raise LibraryError("malformed 3DS (a chunk is cut off); export it again") from error
-
-
-def _only(data: bytes, kind: int) -> bytes:
-    return next(body for k, body in _chunks(data) if k == kind)
 
 
 def _chunks(data: bytes) -> Iterator[tuple[int, bytes]]:

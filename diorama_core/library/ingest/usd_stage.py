@@ -93,10 +93,8 @@ def _stay_beside(path: Path) -> None:
 
 def world_of(stage: Any) -> Float[np.ndarray, "4 4"]:
     """The stage's frame and unit to the world: +Z up, metres."""
-    from pxr import UsdGeom
-
-    metres = float(UsdGeom.GetStageMetersPerUnit(stage))
-    turn = Z_UP if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.y else np.eye(4)
+    up, metres = frame_of(stage)
+    turn = Z_UP if up == "+y" else np.eye(4)
     return turn @ np.diag([metres, metres, metres, 1.0])
 
 

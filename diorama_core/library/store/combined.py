@@ -5,16 +5,14 @@ from __future__ import annotations
 import logging
 from collections.abc import Sequence
 
-import trimesh
-
 from diorama_core.errors import LibraryError
 from diorama_core.library.catalogue import base_id
-from diorama_core.library.record import Shape, ShapeLibrary
+from diorama_core.library.record import LibraryView, Shape, ShapeLibrary, picture_of
 
 log = logging.getLogger(__name__)
 
 
-class CombinedLibrary:
+class CombinedLibrary(LibraryView):
     """The shapes of several libraries, in their order. Implements `ShapeLibrary`.
 
     Where two of them use one id, the library named first keeps it, so that the id means the same wherever that library
@@ -49,26 +47,9 @@ class CombinedLibrary:
             if self._owner.get(shape.id) is library
         )
 
-    def shape(self, shape_id: str) -> Shape:
-        """One record with its support surfaces; raises `LibraryError` when unknown."""
-        return self._library_of(shape_id).shape(shape_id)
-
-    def mesh(self, shape_id: str) -> trimesh.Trimesh:
-        """Geometry only, one mesh in the canonical frame. Shared: do not change it."""
-        return self._library_of(shape_id).mesh(shape_id)
-
-    def parts(self, shape_id: str) -> trimesh.Scene:
-        """Geometry with materials, in the canonical frame. Shared: do not change it."""
-        return self._library_of(shape_id).parts(shape_id)
-
-    def glb(self, shape_id: str) -> bytes:
-        """`parts` as GLB, +Z up, metres."""
-        return self._library_of(shape_id).glb(shape_id)
-
     def thumbnail(self, shape_id: str) -> bytes | None:
         """The picture that came with the shape, where its library keeps one."""
-        thumbnail = getattr(self._library_of(shape_id), "thumbnail", None)
-        return None if thumbnail is None else thumbnail(shape_id)
+        return picture_of(self._library_of(shape_id), shape_id)
 
     def is_built(self, shape_id: str) -> bool:
         """Whether what its library derives from the shape is on disk; stored libraries have it from the start."""

@@ -130,11 +130,16 @@ class FeatureMatrix:
             scores = np.where(among, scores, -np.inf)
         wanted = min(k, int(np.isfinite(scores).sum()))
         likely = _greatest(scores, min(_RESCORED * k, wanted + 64))
-        exact = self.values[likely].astype(np.float32) @ np.asarray(query, np.float32)
+        return self.best_of(likely[np.isfinite(scores[likely])], query, wanted)
+
+    def best_of(
+        self, positions: Int[np.ndarray, "m"], query: Float[np.ndarray, "width"], k: int
+    ) -> tuple[NearShape, ...]:
+        """The `k` best of some keys by their positions, scored in single precision."""
+        exact = self.values[positions].astype(np.float32) @ np.asarray(query, np.float32)
         best = exact.max(axis=1)
-        order = np.lexsort((likely, -best))
-        order = order[np.isfinite(scores[likely[order]])][:wanted]
-        return tuple(NearShape(self.keys[likely[i]], float(best[i]), int(exact[i].argmax())) for i in order)
+        order = np.lexsort((positions, -best))[:k]
+        return tuple(NearShape(self.keys[positions[i]], float(best[i]), int(exact[i].argmax())) for i in order)
 
     def scores(self, query: Float[np.ndarray, "width"]) -> Float[np.ndarray, "keys"]:
         """Dot products with a query in half precision; the best of each key's rows."""

@@ -113,8 +113,12 @@ class Records:
             ).fetchone()
         if row is None:
             return None
-        record, model, source_key, warnings, thumbnail = row
-        return StoredRow(shape_from_json(record), model, source_key, _warnings(warnings), thumbnail)
+        record, model, source_key, text, thumbnail = row
+        warnings = parse_json(
+            text, "the warnings of a shape", LibraryError, advice="add the shape to its library again"
+        )
+        lines = tuple(map(str, warnings)) if isinstance(warnings, list) else ()
+        return StoredRow(shape_from_json(record), model, source_key, lines, thumbnail)
 
     def source_keys(self) -> frozenset[str]:
         """The source key of everything kept."""
@@ -186,11 +190,6 @@ class Records:
             yield
         except (sqlite3.Error, OSError) as error:
             raise LibraryError(f"the shape library {self._path} cannot be used ({error})") from error
-
-
-def _warnings(text: str) -> tuple[str, ...]:
-    warnings = parse_json(text, "the warnings of a shape", LibraryError, advice="add the shape to its library again")
-    return tuple(map(str, warnings)) if isinstance(warnings, list) else ()
 
 
 @contextmanager

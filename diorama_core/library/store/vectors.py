@@ -83,11 +83,7 @@ class LanceIndex:
         wanted = max(4 * k, 64) * self._matrix.rows
         asked = self._table.search(np.asarray(query, np.float32)).distance_type("dot").nprobes(self._probes)
         rows = asked.limit(wanted).select(["position", "_distance"]).to_arrow()["position"].to_numpy()
-        among = np.unique(rows // self._matrix.rows)
-        exact = self._matrix.values[among].astype(np.float32) @ np.asarray(query, np.float32)
-        best = exact.max(axis=1)
-        order = np.lexsort((among, -best))[:k]
-        return tuple(NearShape(self._matrix.keys[among[i]], float(best[i]), int(exact[i].argmax())) for i in order)
+        return self._matrix.best_of(np.unique(rows // self._matrix.rows), query, k)
 
     def _up_to_date(self, lancedb: Any) -> Any:
         """The table with all rows of the matrix, indexed."""

@@ -11,7 +11,7 @@ from diorama_core.library import furniture
 from diorama_core.library.catalogue import built_in_library
 from diorama_core.library.furniture.articulation import Articulation, articulation
 from diorama_core.library.furniture.joints import Joint
-from diorama_core.library.furniture.solids import Solid
+from diorama_core.library.furniture.solids import Solid, places
 
 FAMILIES = (
     "dresser", "sideboard", "cabinet", "wardrobe", "night stand", "tv stand", "door", "laptop", "office chair",
@@ -39,11 +39,9 @@ def posed(joint: Joint, share: float) -> np.ndarray:
 def closed(solids: tuple[Solid, ...]) -> list[manifold3d.Manifold]:
     found = []
     for solid in solids:
-        mesh = trimesh.Trimesh(solid.vertices, solid.faces, process=False)
-        mesh.merge_vertices(merge_tex=True, merge_norm=True, digits_vertex=6)
-        made = manifold3d.Manifold(
-            manifold3d.Mesh(np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.uint32))
-        )
+        first, number = places(solid.vertices)
+        faces = number[solid.faces].astype(np.uint32)
+        made = manifold3d.Manifold(manifold3d.Mesh(solid.vertices[first].astype(np.float32), faces))
         if made.status() == manifold3d.Error.NoError and not made.is_empty():
             found.append(made)
     assert len(found) >= 0.8 * len(solids), "too few of the solids are closed to tell"

@@ -53,13 +53,13 @@ def side_by_side(shapes: Sequence[Shape]) -> Scene:
 
 @pytest.mark.slow
 def test_shapes_stand_by_themselves() -> None:
-    """A fifth of them, and all that do not: their bodies take a minute to make. Kinds stand beside one another."""
+    """A tenth of them, and all that do not: their bodies take a minute to make. Kinds stand beside one another."""
     pytest.importorskip("mujoco", reason="an optional extra")
     shapes, moved = standing_shapes(), {}
-    shapes = [s for k, s in enumerate(shapes) if k % 5 == 0 or s.id in WEIGHTED | HUNG | LEANING]
+    shapes = [s for k, s in enumerate(shapes) if k % 10 == 0 or s.id in WEIGHTED | HUNG | LEANING]
     for first in range(0, len(shapes), AT_ONCE):
         moved |= drift(side_by_side(shapes[first : first + AT_ONCE]), built_in_library(), seconds=1.0)
-    assert len(moved) > 200
+    assert len(moved) > 100
     assert {i for i, drifted in moved.items() if stable_share({i: drifted}) < 1.0} == WEIGHTED | HUNG | LEANING
 
 

@@ -10,6 +10,9 @@ from typing import Any
 import numpy as np
 import trimesh
 
+from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
+from diorama_core.library.ingest.relief import relief
+
 
 def block(size: tuple[float, float, float], at: tuple[float, float, float]) -> trimesh.Trimesh:
     return trimesh.creation.box(size, transform=trimesh.transformations.translation_matrix(at))
@@ -33,6 +36,12 @@ def y_up(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
     """A model in the frame of glTF: +Y up, front along +Z."""
     R = np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]], float)
     return trimesh.Trimesh(mesh.vertices @ R.T, mesh.faces, process=False)
+
+
+def known_shapes(*rows: tuple[str, trimesh.Trimesh]) -> KnownShapes:
+    """Upright shapes of some kinds, facing +X, to compare others with."""
+    features = np.stack([relief_features(relief(mesh)) for _, mesh in rows])
+    return KnownShapes(tuple(name for name, _ in rows), features, np.log([mesh.extents for _, mesh in rows]))
 
 
 def document(**changes: Any) -> dict[str, Any]:

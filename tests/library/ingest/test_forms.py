@@ -16,10 +16,10 @@ from diorama_core.errors import LibraryError
 from diorama_core.io.file_heads import head_of
 from diorama_core.io.glb import read_glb, write_glb
 from diorama_core.library.ingest.finding import members_of
-from diorama_core.library.ingest.frames import OBJ, own_frame, squaring_turn
+from diorama_core.library.ingest.frames import own_frame, squaring_turn
 from diorama_core.library.ingest.gltf import use_specular_glossiness
 from diorama_core.library.ingest.gltf_compressed import meshopt_view
-from diorama_core.library.ingest.joint import exporter_of, groups_of, joint_convention
+from diorama_core.library.ingest.joint import exporter_of, groups_of
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import MODEL_FORMS, form_of, read_model
 from diorama_core.library.ingest.obj import absolute_indices, plain_mtl
@@ -207,19 +207,6 @@ def test_content_tells_the_format_before_the_name(tmp_path: Path) -> None:
     (tmp_path / "lfs.glb").write_bytes(b"version https://git-lfs.github.com/spec/v1\noid sha256:0")
     with pytest.raises(LibraryError, match="Git LFS"):
         read(tmp_path / "lfs.glb")
-
-
-def test_a_pack_has_one_convention_and_exceptions_must_be_far_likelier(tmp_path: Path) -> None:
-    from diorama_core.library.ingest.given import UNITS, axis_name
-    from diorama_core.library.ingest.relief import quarter_turns
-
-    ups = np.array([axis_name(R[2]) for R in quarter_turns()])
-    says_y = np.where(ups == "+y", 0.0, -4.0)[:, None] + np.where(np.array(list(UNITS)) == 0.01, 0.0, -4.0)
-    says_z = np.where(ups == "+z", 0.0, -2.0)[:, None] + np.zeros(len(UNITS))
-    joint = joint_convention(OBJ, [says_y, says_y, says_y, says_z])
-    assert max(joint.up, key=lambda axis: joint.up[axis]) == "+y"
-    assert joint.up["+y"] > 0.9
-    assert max(joint.unit, key=lambda unit: joint.unit[unit]) == 0.01
 
 
 def test_files_are_grouped_by_folder_and_exporter(tmp_path: Path) -> None:

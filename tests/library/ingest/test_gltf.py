@@ -50,6 +50,17 @@ def pack(tmp_path: Path, data: bytes, limits: Limits | None = None) -> tuple[dic
     return json.loads(text), binary, references.warnings
 
 
+def packed(tmp_path: Path, **more: Any) -> tuple[dict[str, Any], bytes, list[str]]:
+    """`pack` of the one triangle with these entries."""
+    return pack(tmp_path, write_glb(document(**more), POINTS.tobytes()))
+
+
+def picture_in(doc: dict[str, Any], binary: bytes) -> bytes:
+    (image,) = doc["images"]
+    view = doc["bufferViews"][image["bufferView"]]
+    return binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
+
+
 def accessor_values(row: dict[str, Any], doc: dict[str, Any], binary: bytes) -> np.ndarray:
     view = doc["bufferViews"][row["bufferView"]]
     raw = binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
@@ -97,23 +108,10 @@ def test_views_of_several_buffers_are_laid_one_after_another_on_fours(tmp_path: 
 
 def test_scaled_integers_with_a_stride_become_floats(tmp_path: Path) -> None:
     raw = b"".join(np.array(row, "<i2").tobytes() + b"pad!" for row in ([32767, 0], [-32768, -16384], [16384, 1]))
-    doc, binary, _ = pack(
-        tmp_path,
-        write_glb(
-            document(
-                accessors=[
-                    {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
-                    {"bufferView": 1, "componentType": 5122, "count": 3, "type": "VEC2", "normalized": True},
-                ],
-                bufferViews=[
-                    {"buffer": 0, "byteLength": 36},
-                    {"buffer": 0, "byteOffset": 36, "byteLength": 24, "byteStride": 8},
-                ],
-                buffers=[{"byteLength": 60}],
-            ),
-            POINTS.tobytes() + raw,
-        ),
-    )
+    whole = document(buffers=[{"byteLength": 60}])
+    whole["accessors"].append({"bufferView": 1, "componentType": 5122, "count": 3, "type": "VEC2", "normalized": True})
+    whole["bufferViews"].append({"buffer": 0, "byteOffset": 36, "byteLength": 24, "byteStride": 8})
+    doc, binary, _ = pack(tmp_path, write_glb(whole, POINTS.tobytes() + raw))
     row = doc["accessors"][1]
     assert (row["componentType"], row["normalized"]) == (5126, False)
     expected = np.array([[1.0, 0.0], [-1.0, -16384 / 32767], [16384 / 32767, 1 / 32767]])
@@ -122,31 +120,23 @@ def test_scaled_integers_with_a_stride_become_floats(tmp_path: Path) -> None:
 
 def test_a_picture_beside_the_model_is_taken_inside(tmp_path: Path) -> None:
     (tmp_path / "wood.png").write_bytes(png())
-    doc, binary, warnings = pack(
-        tmp_path, write_glb(document(images=[{"uri": "wood.png", "name": "wood"}]), POINTS.tobytes())
-    )
-    (image,) = doc["images"]
-    view = doc["bufferViews"][image["bufferView"]]
-    assert binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]] == png()
-    assert image["mimeType"] == "image/png"
-    assert "uri" not in image
+    doc, binary, warnings = packed(tmp_path, images=[{"uri": "wood.png", "name": "wood"}])
+    assert picture_in(doc, binary) == png()
+    assert doc["images"][0]["mimeType"] == "image/png"
+    assert "uri" not in doc["images"][0]
     assert warnings == []
 
 
 def test_a_missing_picture_becomes_white_with_a_warning(tmp_path: Path) -> None:
-    doc, binary, warnings = pack(tmp_path, write_glb(document(images=[{"uri": "gone.png"}]), POINTS.tobytes()))
-    view = doc["bufferViews"][doc["images"][0]["bufferView"]]
-    data = binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
-    assert np.asarray(Image.open(io.BytesIO(data))).tolist() == [[[255, 255, 255]]]
+    doc, binary, warnings = packed(tmp_path, images=[{"uri": "gone.png"}])
+    assert np.asarray(Image.open(io.BytesIO(picture_in(doc, binary)))).tolist() == [[[255, 255, 255]]]
     assert warnings == ["texture left out: 'gone.png' is missing"]
 
 
 def test_a_webp_texture_is_named_plainly(tmp_path: Path) -> None:
     textures = [{"extensions": {"EXT_texture_webp": {"source": 1}}}, {"source": 0}]
     images = [{"uri": "data:image/png;base64," + base64.b64encode(png()).decode()}] * 2
-    doc, _, _ = pack(
-        tmp_path, write_glb(document(textures=textures, images=[dict(i) for i in images]), POINTS.tobytes())
-    )
+    doc, _, _ = packed(tmp_path, textures=textures, images=[dict(i) for i in images])
     assert [t["source"] for t in doc["textures"]] == [1, 0]
 
 
@@ -171,7 +161,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 def test_what_breaks_the_rules_is_refused_with_the_reason(tmp_path: Path, name: str) -> None:
     edit, reason = REFUSED[name]
     with pytest.raises(LibraryError, match=reason):
-        pack(tmp_path, write_glb(document(**edit), POINTS.tobytes()))
+        packed(tmp_path, **edit)
 
 
 def test_limits_are_counted_over_what_is_drawn(tmp_path: Path) -> None:

@@ -10,16 +10,17 @@ import trimesh
 
 from diorama_core.errors import InputError
 from diorama_core.library import taxonomy
+from diorama_core.library.ingest import known_shapes as known_module
 from diorama_core.library.ingest.frames import GLTF, STL, UNKNOWN, Convention
 from diorama_core.library.ingest.given import Given, axis_name, axis_vector
 from diorama_core.library.ingest.guess import Frame, guess_frame
-from diorama_core.library.ingest.known_shapes import KnownShapes, load_known_shapes, relief_features
+from diorama_core.library.ingest.known_shapes import KnownShapes, load_known_shapes
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.names import NameEvidence, name_evidence
 from diorama_core.library.ingest.relief import Relief, quarter_turns, relief, turn
 from diorama_core.library.ingest.repair import repair
-from tests.library.ingest.models import block, chair, table, y_up
+from tests.library.ingest.models import block, chair, known_shapes, table, y_up
 
 TRUTH = Path(__file__).with_name("cad_truth.csv")
 
@@ -28,13 +29,7 @@ TRUTH = Path(__file__).with_name("cad_truth.csv")
 def few() -> KnownShapes:
     """Two chairs and a table to compare with, upright and facing +X."""
     stout = trimesh.Trimesh(chair().vertices * [1.1, 1.0, 0.9], chair().faces, process=False)
-    shapes = {"chair": [chair(), stout], "table": [table()]}
-    rows = [(name, mesh) for name, meshes in shapes.items() for mesh in meshes]
-    return KnownShapes(
-        tuple(name for name, _ in rows),
-        np.stack([relief_features(relief(mesh)) for _, mesh in rows]),
-        np.log([mesh.extents for _, mesh in rows]),
-    )
+    return known_shapes(("chair", chair()), ("chair", stout), ("table", table()))
 
 
 def guessed(
@@ -72,11 +67,7 @@ def test_appearance_tells_what_a_nameless_model_is(few: KnownShapes) -> None:
 def test_kinds_that_a_nameless_model_cannot_be_take_no_places_among_the_likest() -> None:
     small = ("cup", "bottle", "bowl", "vase", "books", "laptop", "clock", "candle", "toaster")
     stout = trimesh.Trimesh(chair().vertices * [1.1, 1.0, 0.9], chair().faces, process=False)
-    known = KnownShapes(
-        (*small, "chair"),
-        np.stack([relief_features(relief(chair()))] * len(small) + [relief_features(relief(stout))]),
-        np.log([chair().extents] * len(small) + [stout.extents]),
-    )
+    known = known_shapes(*((name, chair()) for name in small), ("chair", stout))
     assert guessed(chair(), known, given=Given(up="+z", unit_m=1.0)).category == "chair"
 
 
@@ -89,8 +80,7 @@ def test_what_is_called_by_no_known_word_keeps_its_unit_and_is_unsure_what_it_is
 
 
 def test_of_two_kinds_that_it_may_be_the_more_frequent_one_is_likelier() -> None:
-    shape, size = relief_features(relief(table())), np.log(table().extents)
-    known = KnownShapes(("desk", "table"), np.stack([shape, shape]), np.stack([size, size]))
+    known = known_shapes(("desk", table()), ("table", table()))
     frame = guessed(table(), known, given=Given(up="+z", unit_m=1.0))
     assert frame.category == "table"
 
@@ -156,8 +146,11 @@ def models(shared: Path) -> list[Model]:
 
 
 @pytest.fixture(scope="module")
-def built_in() -> KnownShapes:
-    return load_known_shapes()
+def built_in(tmp_path_factory: pytest.TempPathFactory) -> KnownShapes:
+    """One of each kind, where imports compare with six: reliefs of those take ten seconds."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(known_module, "EACH", 1)
+        return load_known_shapes(tmp_path_factory.mktemp("reliefs"))
 
 
 def shares(models: list[Model], known: KnownShapes, convention: Convention, shuffled: bool) -> tuple[float, ...]:

@@ -6,7 +6,6 @@ import io
 import re
 import struct
 import zlib
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -22,18 +21,11 @@ from diorama_core.library.ingest.repair import Repaired, repair
 from tests.library.ingest.models import TRIANGLE, block, chair, document, write_glb
 
 LIMITS = Limits(file_bytes=2**20, triangles=5_000, nodes=100, image_pixels=2**20, texture_side_px=64)
-Edit = Callable[[dict[str, Any]], None]
 
 
 def read(path: Path) -> tuple[RawModel, Repaired]:
     raw = read_model(path, path.parent, LIMITS)
     return raw, repair(raw.scene, LIMITS)
-
-
-def edited(edit: Edit) -> dict[str, Any]:
-    made = document()
-    edit(made)
-    return made
 
 
 def test_the_sound_triangle_is_read(tmp_path: Path) -> None:
@@ -43,99 +35,47 @@ def test_the_sound_triangle_is_read(tmp_path: Path) -> None:
     assert len(model.whole.faces) == 1
 
 
-def cyclic(d: dict[str, Any]) -> None:
-    d["nodes"] = [{"mesh": 0}, {"children": [2]}, {"children": [1]}]
+CHAINED = [{"mesh": 0}, {"children": [2]}, {"children": [1]}]
+DOUBLING = [{"children": [1, 1]}, {"children": [2, 2]}, {"mesh": 0}]
+MANY_PARTS = [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}] * 60}]
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "cyclic": ({"nodes": CHAINED}, "its own ancestor|circle"),
+    "own child": ({"nodes": [{"mesh": 0, "children": [0]}]}, "its own ancestor"),
+    "doubling": ({"nodes": DOUBLING}, "two parents"),
+    "endless accessor": ({"accessors.0": {"count": 10**12, "bufferView": None}}, "claims 1000000000000 items"),
+    "past the view": ({"accessors.0": {"count": 4}}, "past its buffer view"),
+    "past the buffer": ({"bufferViews.0": {"byteLength": 10**6}}, "past its buffer"),
+    "negative offset": ({"bufferViews.0": {"byteOffset": -8}}, "past its buffer"),
+    "old version": ({"asset": {"version": "1.0"}}, "version '1.0'"),
+    "climbing": ({"buffers.0": {"uri": "../secret.bin"}}, "outside the folder"),
+    "absolute": ({"buffers.0": {"uri": "/etc/hostname"}}, "outside the folder"),
+    "encoded": ({"buffers.0": {"uri": "%2e%2e/secret.bin"}}, "outside the folder"),
+    "from the web": ({"buffers.0": {"uri": "https://example.org/a.bin"}}, "web address"),
+    "no mesh": ({"nodes": [{"name": "nothing"}]}, "no triangle|malformed"),
+    "mesh of no kind": ({"meshes": 7}, "malformed|list of objects"),
+    "many nodes": ({"nodes": [{"mesh": 0}] * 101}, "101 nodes"),
+    "repeated mesh": (
+        {"meshes": MANY_PARTS, "nodes": [{"mesh": 0}] * 99, "scenes": [{"nodes": list(range(99))}]},
+        "5940 triangles",
+    ),
+}
+"""Entries of a document, or of the first row of one of its tables, that are changed; None takes one away."""
 
 
-def own_child(d: dict[str, Any]) -> None:
-    d["nodes"] = [{"mesh": 0, "children": [0]}]
-
-
-def doubling(d: dict[str, Any]) -> None:
-    d["nodes"] = [{"children": [1, 1]}, {"children": [2, 2]}, {"mesh": 0}]
-
-
-def endless_accessor(d: dict[str, Any]) -> None:
-    d["accessors"][0] = {"componentType": 5126, "count": 10**12, "type": "VEC3"}
-
-
-def past_the_view(d: dict[str, Any]) -> None:
-    d["accessors"][0]["count"] = 4
-
-
-def past_the_buffer(d: dict[str, Any]) -> None:
-    d["bufferViews"][0]["byteLength"] = 10**6
-
-
-def negative_offset(d: dict[str, Any]) -> None:
-    d["bufferViews"][0]["byteOffset"] = -8
-
-
-def old_version(d: dict[str, Any]) -> None:
-    d["asset"]["version"] = "1.0"
-
-
-def climbing(d: dict[str, Any]) -> None:
-    d["buffers"][0]["uri"] = "../secret.bin"
-
-
-def absolute(d: dict[str, Any]) -> None:
-    d["buffers"][0]["uri"] = "/etc/hostname"
-
-
-def encoded(d: dict[str, Any]) -> None:
-    d["buffers"][0]["uri"] = "%2e%2e/secret.bin"
-
-
-def from_the_web(d: dict[str, Any]) -> None:
-    d["buffers"][0]["uri"] = "https://example.org/a.bin"
-
-
-def no_mesh(d: dict[str, Any]) -> None:
-    d["nodes"] = [{"name": "nothing"}]
-
-
-def mesh_of_no_kind(d: dict[str, Any]) -> None:
-    d["meshes"] = 7
-
-
-def many_nodes(d: dict[str, Any]) -> None:
-    d["nodes"] = [{"mesh": 0}] * 101
-
-
-def repeated_mesh(d: dict[str, Any]) -> None:
-    d["accessors"][1]["count"] = 3
-    d["meshes"] = [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}] * 60}]
-    d["nodes"] = [{"mesh": 0}] * 99
-    d["scenes"] = [{"nodes": list(range(99))}]
-
-
-REFUSED: list[tuple[Edit, str]] = [
-    (cyclic, "its own ancestor|circle"),
-    (own_child, "its own ancestor"),
-    (doubling, "two parents"),
-    (endless_accessor, "claims 1000000000000 items"),
-    (past_the_view, "past its buffer view"),
-    (past_the_buffer, "past its buffer"),
-    (negative_offset, "past its buffer"),
-    (old_version, "version '1.0'"),
-    (climbing, "outside the folder"),
-    (absolute, "outside the folder"),
-    (encoded, "outside the folder"),
-    (from_the_web, "web address"),
-    (no_mesh, "no triangle|malformed"),
-    (mesh_of_no_kind, "malformed|list of objects"),
-    (many_nodes, "101 nodes"),
-    (repeated_mesh, "5940 triangles"),
-]
-
-
-@pytest.mark.parametrize(("edit", "reason"), REFUSED, ids=[e.__name__ for e, _ in REFUSED])
-def test_a_hostile_gltf_is_refused(tmp_path: Path, edit: Edit, reason: str) -> None:
+@pytest.mark.parametrize("name", REFUSED)
+def test_a_hostile_gltf_is_refused(tmp_path: Path, name: str) -> None:
+    changes, reason = REFUSED[name]
+    made = document()
+    for key, value in changes.items():
+        table, _, row = key.partition(".")
+        if row:
+            made[table][0] = {k: v for k, v in (made[table][0] | value).items() if v is not None}
+        else:
+            made[table] = value
     (tmp_path / "secret.bin").write_bytes(TRIANGLE)
     (tmp_path / "models").mkdir()
     with pytest.raises(LibraryError, match=reason):
-        read(write_glb(tmp_path / "models" / "a.glb", edited(edit)))
+        read(write_glb(tmp_path / "models" / "a.glb", made))
 
 
 BYTES = {

@@ -44,5 +44,11 @@ def test_few_or_divided_files_keep_it(evidence: list[Evidence]) -> None:
     assert joint.name == "glTF"
 
 
+def test_a_pack_has_one_convention_and_exceptions_must_be_far_likelier() -> None:
+    joint = joint_convention(OBJ, [saying("+y", 4.0)] * 3 + [saying("+z", 2.0)])
+    assert joint.up["+y"] > 0.9
+    assert max(joint.unit, key=lambda unit: joint.unit[unit]) == 1.0
+
+
 def test_formats_without_a_promise_have_none_to_break() -> None:
     assert joint_convention(OBJ, [saying("-x", 12.0)] * 5).name == "OBJ"

@@ -13,10 +13,8 @@ from diorama_core.errors import LibraryError
 from diorama_core.export.colliders import body_of
 from diorama_core.library.ingest.correct import correct
 from diorama_core.library.ingest.given import Given
-from diorama_core.library.ingest.known_shapes import KnownShapes, relief_features
 from diorama_core.library.ingest.limits import DEFAULT_LIMITS
 from diorama_core.library.ingest.models import read_model
-from diorama_core.library.ingest.relief import relief
 from diorama_core.library.ingest.repair import notes_of_node, repair
 from diorama_core.library.ingest.shaping import ModelSource, ingest_file
 from diorama_core.library.opening import articulation_of, can_open, open_parts
@@ -25,7 +23,7 @@ from diorama_core.library.store import StoredLibrary
 from diorama_core.library.stretch import stretch_parts
 from diorama_core.scene.types import Architecture, Pose, Scene, SceneObject, Support
 from tests.app.small_room import room_planes
-from tests.library.ingest.models import table
+from tests.library.ingest.models import known_shapes, table
 
 PAGE = Path(__file__).parents[3] / "docs" / "adding.md"
 (EXAMPLE,) = re.findall(
@@ -61,9 +59,8 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> StoredLibrary:
     folder, names = tmp_path_factory.mktemp("cabinet"), dict[str, object]()
     exec(EXAMPLE, names)
     names["cabinet"]().export(folder / "cabinet.glb")
-    known = KnownShapes(("table",), relief_features(relief(table()))[None], np.log([table().extents]))
     source = ModelSource(folder / "cabinet.glb", folder, "cabinet", "key", Given(category="cabinet", front="+z"))
-    taken = ingest_file(source, known)
+    taken = ingest_file(source, known_shapes(("table", table())))
     assert not [line for line in taken.warnings if "left out" in line]
     stored = StoredLibrary(folder / "library", create=True)
     stored.add(taken)

@@ -11,7 +11,8 @@ import pytest
 import trimesh
 
 from diorama_core.errors import InputError
-from diorama_core.library.datasets import as_sources, dataset_named, published, recognise
+from diorama_core.library import datasets
+from diorama_core.library.datasets import as_sources, dataset_named, read_json, recognise
 from diorama_core.library.ingest.given import Given
 from diorama_core.library.ingest.models import read_model
 from diorama_core.library.ingest.shaping import ModelSource
@@ -96,32 +97,23 @@ EXPECTED = {
 }
 
 
-def made(name: str, root: Path, given: Given | None = None) -> tuple[ModelSource, ...]:
+def made(name: str, root: Path) -> tuple[ModelSource, ...]:
     MAKERS[name](root)
-    return as_sources(dataset_named(name), root, given or Given())
+    return as_sources(dataset_named(name), root, Given())
 
 
 @pytest.mark.parametrize("name", MAKERS)
-def test_models_with_what_the_set_says_of_them(name: str, tmp_path: Path) -> None:
+def test_a_copy_is_recognised_and_read_with_what_the_set_says_of_its_models(name: str, tmp_path: Path) -> None:
     found = made(name, tmp_path)
     facts = [(s.id, s.given.category, s.given.up, s.given.front, s.given.unit_m) for s in found]
     assert facts == EXPECTED[name]
     assert all(s.given.source == name and s.given.licence and s.given.reason == name for s in found)
-
-
-@pytest.mark.parametrize("name", MAKERS)
-def test_a_copy_is_recognised_and_its_models_can_be_read(name: str, tmp_path: Path) -> None:
-    found = made(name, tmp_path)
     dataset = recognise(tmp_path)
     assert dataset is not None
     assert dataset.name == name
     assert all(len(read_model(s.path, s.root).scene.geometry) for s in found)
-
-
-@pytest.mark.parametrize("name", MAKERS)
-def test_a_flag_goes_before_what_the_set_says(name: str, tmp_path: Path) -> None:
-    found = made(name, tmp_path, Given(up="+z", front="+x", category="stool"))
-    assert {(s.given.up, s.given.front, s.given.category) for s in found} == {("+z", "+x", "stool")}
+    flagged = as_sources(dataset, tmp_path, Given(up="+z", front="+x", category="stool"))
+    assert {(s.given.up, s.given.front, s.given.category) for s in flagged} == {("+z", "+x", "stool")}, "flags go first"
 
 
 @pytest.mark.parametrize("name", MAKERS)
@@ -133,10 +125,8 @@ def test_an_empty_folder_says_what_is_missing(name: str, tmp_path: Path) -> None
 def test_captions_and_words_are_retained(tmp_path: Path) -> None:
     assert [s.given.caption for s in made("objaverse-lvis", tmp_path / "o")] == ["My old chair", "flugelhorn"]
     assert made("objaverse-lvis", tmp_path / "o")[1].given.synonyms == ("flugelhorn",)
-    assert [s.given.caption for s in made("3d-future", tmp_path / "f")] == [
-        "lounge chair, modern",
-        "dining table, wood",
-    ]
+    future = [s.given.caption for s in made("3d-future", tmp_path / "f")]
+    assert future == ["lounge chair, modern", "dining table, wood"]
     assert [s.given.caption for s in made("abo", tmp_path / "a")] == ["Oak chair", "desk"]
 
 
@@ -153,19 +143,19 @@ def test_broken_metadata_names_the_file(tmp_path: Path) -> None:
 
 
 def test_packed_metadata_is_capped_before_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(published, "MAX_METADATA_BYTES", 100_000)
+    monkeypatch.setattr(datasets, "MAX_METADATA_BYTES", 100_000)
     path = tmp_path / "lvis-annotations.json.gz"
     path.write_bytes(gzip.compress(b'["a"]'))
-    assert published.read_json(path) == ["a"]
+    assert read_json(path) == ["a"]
     path.write_bytes(gzip.compress(b" " * 50_000_000))
     with pytest.raises(InputError, match=r"unpack to more than 0\.1 MB.*; download it again"):
-        published.read_json(path)
+        read_json(path)
     path.write_bytes(gzip.compress(b'["a"]')[:-9])
     with pytest.raises(InputError, match="cannot be read"):
-        published.read_json(path)
+        read_json(path)
     (tmp_path / "deep.json").write_text("[" * 10_000)
     with pytest.raises(InputError, match="nested"):
-        published.read_json(tmp_path / "deep.json")
+        read_json(tmp_path / "deep.json")
 
 
 def test_an_unknown_data_set_lists_the_known(tmp_path: Path) -> None:

@@ -1,4 +1,8 @@
-"""Objaverse-LVIS, ShapeNetCore, HSSD, 3D-FUTURE and ABO: where their files lie and what their metadata means."""
+"""Objaverse-LVIS, ShapeNetCore, HSSD, 3D-FUTURE and ABO: where their files lie and what their metadata means.
+
+They are read from a local copy in the layout in which they are distributed: nothing is downloaded, and each licence
+stays what it is. Taking the models in is the same as for anyone's own.
+"""
 
 from __future__ import annotations
 
