@@ -47,7 +47,7 @@ def test_html_is_redrawn_only_when_it_differs(page: Page) -> None:
     live.show("<b>100%</b>")
     assert handle.content == "touched"
     live.show("<b>100%</b>", again=True)
-    assert handle.content.endswith(first)
+    assert live.body in handle.content
     assert handle.content != first, "or the page would take it for what it shows"
     live.show("")
     assert not handle.visible
