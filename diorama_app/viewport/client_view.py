@@ -115,8 +115,8 @@ class ClientView:
         """An empty list for the nodes of something that is shown; those of what was shown before are gone."""
         for node in self._nodes.get(what, ()):
             node.remove()
-        self._nodes[what] = nodes = []
-        return nodes
+        self._nodes[what] = []
+        return self._nodes[what]
 
     def _add_edges(self, name: str, plane: Plane, colour: Colour, thickness_px: float) -> viser.SceneNodeHandle:
         ends = plane.polygon + PLANE_LIFT_M * plane.normal
