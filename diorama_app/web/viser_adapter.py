@@ -121,7 +121,7 @@ def create_server(
         InputError: the port is taken or the address is not this machine's.
     """
     _check_port(host, port)
-    with _replace_serve(_guarded_serve(visitors, pictures, projects)), contextlib.redirect_stdout(io.StringIO()):
+    with _replace_serve(_serve_with_check(visitors, pictures, projects)), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=False)
     _secure(server, _Uploads(), refused)
     return server
@@ -233,7 +233,7 @@ def _check_port(host: str, port: int) -> None:
             ) from error
 
 
-def _guarded_serve(
+def _serve_with_check(
     visitors: Visitors, pictures: Pictures | None, projects: ProjectServers | None
 ) -> Callable[..., Any]:
     """Starts websocket servers with the visitors' check in front."""
