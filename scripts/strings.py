@@ -99,6 +99,8 @@ def texts_in(code: str) -> Iterator[Text]:
                 yield one, many
             for number in WHERE.get(function, ()):
                 yield from _constants(call.args[number]) if number < len(call.args) else ()
+            for word in call.keywords:
+                yield from _constants(word.value) if (function, word.arg) == ("Command", "hint") else ()
 
 
 def _constants(value: ast.expr) -> Iterator[str]:

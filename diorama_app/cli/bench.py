@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from diorama_app.cli.arguments import command, progress_bar
-from diorama_app.cli.bench_photos import Bench, add_photos, add_questions_bench, show_bench, write_json, write_text
+from diorama_app.cli.bench_photos import add_photos, add_questions_bench, show_bench, write_json, write_text
 from diorama_core.errors import InputError
 
 if TYPE_CHECKING:
@@ -120,13 +121,6 @@ def _bench_layout(a: argparse.Namespace) -> None:
 
 def _bench_rooms(a: argparse.Namespace) -> None:
     """Run the architecture, retrieval, relations, look, views, scans or pose benchmark on rendered rooms."""
-    from diorama_core.evaluation.benchmarks import architecture as architecture_bench
-    from diorama_core.evaluation.benchmarks import look as look_bench
-    from diorama_core.evaluation.benchmarks import pose as pose_bench
-    from diorama_core.evaluation.benchmarks import relations as relations_bench
-    from diorama_core.evaluation.benchmarks import retrieval as retrieval_bench
-    from diorama_core.evaluation.benchmarks import scans as scans_bench
-    from diorama_core.evaluation.benchmarks import views as views_bench
     from diorama_core.evaluation.benchmarks.cases import parse_seeds
     from diorama_core.library.catalogue import built_in_library
     from diorama_core.models.store import ModelStore
@@ -134,24 +128,19 @@ def _bench_rooms(a: argparse.Namespace) -> None:
     from diorama_core.pipeline.network_stages import published_embeddings
 
     _check(a)
-    library = built_in_library()
+    run = import_module(f"diorama_core.evaluation.benchmarks.{a.table}").run
+    seeds: Any = a.seed
+    more: tuple[Any, ...] = ()
+    if a.table == "architecture":
+        seeds = parse_seeds(a.seeds, a.seed)
+    elif a.table == "retrieval":
+        more = (published_embeddings(ModelStore.default()),)
+    elif a.table == "relations":
+        more = (LmmSettings.from_environment(),)
+    elif a.table == "look":
+        more = (_look_writer(a.sheet),)
     with progress_bar() as progress:
-        bench: Bench
-        if a.table == "architecture":
-            bench = architecture_bench.run(library, a.scenes, parse_seeds(a.seeds, a.seed), progress)
-        elif a.table == "retrieval":
-            embeddings = published_embeddings(ModelStore.default())
-            bench = retrieval_bench.run(library, a.scenes, a.seed, progress, embeddings)
-        elif a.table == "relations":
-            bench = relations_bench.run(library, a.scenes, a.seed, progress, LmmSettings.from_environment())
-        elif a.table == "look":
-            bench = look_bench.run(library, a.scenes, a.seed, progress, _look_writer(a.sheet))
-        elif a.table == "views":
-            bench = views_bench.run(library, a.scenes, a.seed, progress)
-        elif a.table == "scans":
-            bench = scans_bench.run(library, a.scenes, a.seed, progress)
-        else:
-            bench = pose_bench.run(library, a.scenes, a.seed, progress)
+        bench = run(built_in_library(), a.scenes, seeds, progress, *more)
     show_bench(bench, a)
 
 

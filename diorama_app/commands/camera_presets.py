@@ -72,7 +72,7 @@ class Views:
             return
         if np.linalg.norm(client.view.camera.position - further.T_world_sphere[:3, 3]) > AWAY_M:
             client.view.camera.through_photo = False
-            self._hide_photo(client)
+            client.view.photo.hide()
             return
         self._show_sphere(client)
 
@@ -132,9 +132,5 @@ class Views:
     def _plain(self, client: Client) -> None:
         client.plan = False
         client.view.canvas.close()
-        self._hide_photo(client)
+        client.view.photo.hide()
         client.refresh()
-
-    def _hide_photo(self, client: Client) -> None:
-        client.view.photo.show_backdrop(None, None, 1.0)
-        client.view.photo.show_overlay(None, None, 0.0)

@@ -82,14 +82,12 @@ def _escape(views: Views, cancel: Callable[[Client], bool]) -> Command:
 
 def _general(session: EditorSession, show_help: Do, show_picture: Do) -> tuple[Command, ...]:
     def save(client: Client) -> None:
-        if session.project is None:
-            raise EditRefused("no project is open")
-        session.need_writable()
-        session.autosave.save_soon(session.project, session.scene)
+        project = session.need_project()
+        session.autosave.save_soon(project, session.scene)
         session.autosave.flush()
         if session.autosave.trouble:
             return  # it says so itself
-        client.notice(_("Saved in {name}.").format(name=session.project.name), "good")
+        client.notice(_("Saved in {name}.").format(name=project.name), "good")
 
     return (
         Command("save", "Save", save, "S", "cmd/ctrl", "Save now; every change is saved automatically, too"),
@@ -106,9 +104,7 @@ def _general(session: EditorSession, show_help: Do, show_picture: Do) -> tuple[C
             "find_furniture",
             "Detect furniture",
             find_furniture,
-            None,
-            None,
-            "Detect the furniture in the photo with a network",
+            hint="Detect the furniture in the photo with a network",
         ),
         Command(
             "start_page", "Start page", lambda g: g.open_start(), None, None, "A photo, a description, an empty room"
@@ -116,7 +112,7 @@ def _general(session: EditorSession, show_help: Do, show_picture: Do) -> tuple[C
         Command(
             "projects", "All projects", lambda g: g.open_projects(), None, None, "Search, rename, duplicate, delete"
         ),
-        Command("tour", "Show me around", lambda g: g.start_tour(), None, None, "A tour of the page in six steps"),
+        Command("tour", "Show me around", lambda g: g.start_tour(), hint="A tour of the page in six steps"),
         Command("help", "Help", show_help, "?", "shift", "Every command with its key"),
     )
 
@@ -151,8 +147,8 @@ def _selection(session: EditorSession) -> tuple[Command, ...]:
         Command(
             "select_invert", "Invert selection", invert, "I", "cmd/ctrl", "Select all objects that are not selected"
         ),
-        Command("select_same", "Select same shape", same, None, None, "Select all objects with the same shape"),
-        Command("select_bad", "Select problems", wrong, None, None, "Objects that collide, float or are outside"),
+        Command("select_same", "Select same shape", same, hint="Select all objects with the same shape"),
+        Command("select_bad", "Select problems", wrong, hint="Objects that collide, float or are outside"),
     )
 
 
@@ -237,13 +233,13 @@ def _several(session: EditorSession) -> tuple[Command, ...]:
         session.edit(label, lambda s: arranging.mirror(s, chosen, axis, session.library), by=client, by_hand=True)
 
     return (
-        Command("align_left", "Align left", align("right", "low"), None, None, "Align left edges"),
-        Command("align_centre", "Align centres", align("right", "middle"), None, None, "Align centres"),
-        Command("align_right", "Align right", align("right", "high"), None, None, "Align right edges"),
-        Command("align_back", "Align far", align("away", "high"), None, None, "Align far edges"),
-        Command("align_depth", "Align in depth", align("away", "middle"), None, None, "Align centres in depth"),
-        Command("align_front", "Align near", align("away", "low"), None, None, "Align near edges"),
-        Command("distribute", "Distribute evenly", distribute, None, None, "Equal gaps between three or more objects"),
+        Command("align_left", "Align left", align("right", "low"), hint="Align left edges"),
+        Command("align_centre", "Align centres", align("right", "middle"), hint="Align centres"),
+        Command("align_right", "Align right", align("right", "high"), hint="Align right edges"),
+        Command("align_back", "Align far", align("away", "high"), hint="Align far edges"),
+        Command("align_depth", "Align in depth", align("away", "middle"), hint="Align centres in depth"),
+        Command("align_front", "Align near", align("away", "low"), hint="Align near edges"),
+        Command("distribute", "Distribute evenly", distribute, hint="Equal gaps between three or more objects"),
         Command("mirror", "Mirror", mirror, "M", "shift", "Mirror the selection left to right"),
     )
 
@@ -262,9 +258,7 @@ def _views(views: Views) -> tuple[Command, ...]:
             "play",
             "Play",
             play,
-            None,
-            None,
-            "Switch on gravity; clicks push objects. Play again keeps the result as one undo step",
+            hint="Switch on gravity; clicks push objects. Play again keeps the result as one undo step",
         ),
         Command("focus", "Focus", views.focus, "F", None, "Centre the view on the selection"),
     )
@@ -306,12 +300,7 @@ def _ways() -> tuple[Command, ...]:
         Command("slide", "No overlaps", switch("slide"), "C", None, "Dragged objects stop at other objects"),
         Command("names", "Names", switch("names"), "B", None, "Show the name of every object"),
         Command(
-            "badges",
-            "Warnings",
-            switch("badges"),
-            None,
-            None,
-            "⚠ collides, floats or is outside the room; ? is uncertain",
+            "badges", "Warnings", switch("badges"), hint="⚠ collides, floats or is outside the room; ? is uncertain"
         ),
-        Command("theme", "Dark or light", theme, None, None, "Switch between dark and light panels"),
+        Command("theme", "Dark or light", theme, hint="Switch between dark and light panels"),
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from diorama_app.projects.begin import begin_project, keep_given
@@ -16,7 +17,6 @@ from diorama_app.projects.uploads import Upload, decode
 from diorama_app.reconstruction.build_job import build
 from diorama_app.reconstruction.text_to_scene import creation
 from diorama_app.serve import Running
-from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.session import EditorSession
 from diorama_core.api import Reconstruction
 from diorama_core.errors import DioramaError, EditRefused
@@ -120,13 +120,10 @@ class OpenProjects:
         return self.session(address_of(project.folder))
 
     def _announce(self, project: Project, author: str) -> None:
+        words, visit = f"{author or 'Another program'} builds {project.name}", self.running.workspace.visit
         for editor in self.running.workspace.editors:
             for client in tuple(editor.session.clients.values()):
-                self._offer(client, project, author)
-
-    def _offer(self, client: ConnectedClient, project: Project, author: str) -> None:
-        words, visit = f"{author or 'Another program'} builds {project.name}", self.running.workspace.visit
-        client.post(lambda: client.offer(words, "Look", lambda: visit(client, project)))
+                client.post(partial(client.offer, words, "Look", partial(visit, client, project)))
 
 
 def edit(session: EditorSession, version: str, wanted: Sequence[Edit] | str, author: str) -> Edited:

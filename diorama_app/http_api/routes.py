@@ -30,7 +30,7 @@ from diorama_app.http_api.answers import (
 from diorama_app.http_api.forms import PhotoForm
 from diorama_app.http_api.jobs import JobQueue, Upload
 from diorama_app.http_api.open_projects import OpenProjects
-from diorama_app.http_api.project_routes import project_router
+from diorama_app.http_api.project_routes import MAX_WAIT_S, project_router
 from diorama_app.projects import uploads as sent
 from diorama_app.projects.formats import EXPORT_FORMATS
 from diorama_app.web.visitors import Visitors
@@ -45,7 +45,6 @@ fetch its scene, a picture or a file for other programs. Lengths are metres and 
 otherwise. Every error is `{"error": "one line"}`."""
 MAX_AT_ONCE = 2
 """Scenes that are drawn or exported at a time; others wait, without a thread."""
-MAX_WAIT_S = 60.0
 router = APIRouter(prefix="/v1", responses=error_docs())
 format_router = APIRouter(prefix="/v1", responses=error_docs())
 

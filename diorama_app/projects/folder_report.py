@@ -12,7 +12,7 @@ from urllib.parse import quote
 from PIL import Image
 
 from diorama_app.projects.folder_build import PhotoResult
-from diorama_app.projects.pictures import encode_picture, jpeg_uri
+from diorama_app.projects.pictures import picture_uri
 from diorama_core.errors import DioramaError, ProjectError
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_picture
@@ -94,4 +94,4 @@ def _picture(path: Path, words: str) -> str:
     except DioramaError:
         return f'<p class="dim">{words} cannot be shown</p>'  # somebody removed it; the rest of the report stands
     picture.thumbnail((WIDTH_PX, 2 * WIDTH_PX))
-    return f'<img alt="{words}" src="{jpeg_uri(encode_picture(picture, "JPEG", quality=82))}">'
+    return f'<img alt="{words}" src="{picture_uri(picture, "JPEG", quality=82)}">'

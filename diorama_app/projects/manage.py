@@ -19,6 +19,8 @@ BIN = ".bin"
 """Deleted projects stay here until the folder is emptied by hand."""
 MAX_NAME = 80
 """Characters of a name that a person gives."""
+MAX_VERSIONS = 6
+"""Earlier scenes of a project that are listed."""
 MAX_COPIES = 10_000
 """Copies of one project; each is a folder with a number."""
 
@@ -137,9 +139,11 @@ def out_of_bin(place: Path, projects_dir: Path) -> Path:
     return folder
 
 
-def earlier_versions(project: Project, most: int = 6) -> tuple[tuple[str, str], ...]:
+def earlier_versions(project: Project) -> tuple[tuple[str, str], ...]:
     """(file name, when, in words) of stored earlier scenes, newest first."""
-    return tuple((p.name, time.strftime("%d %b %H:%M", time.localtime(_mtime(p)))) for p in project.backups()[:most])
+    return tuple(
+        (p.name, time.strftime("%d %b %H:%M", time.localtime(_mtime(p)))) for p in project.backups()[:MAX_VERSIONS]
+    )
 
 
 def earlier_scene(project: Project, name: str) -> Scene:

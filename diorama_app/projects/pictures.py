@@ -38,6 +38,12 @@ def jpeg_uri(jpeg: bytes) -> str:
     return "data:image/jpeg;base64," + base64.b64encode(jpeg).decode()
 
 
+def picture_uri(picture: Image.Image | UInt8[np.ndarray, "h w c"], kind: str, **options: Any) -> str:
+    """A picture as it stands inside a page, as a file of this kind."""
+    content = encode_picture(picture, kind, **options)
+    return f"data:image/{kind.lower()};base64," + base64.b64encode(content).decode()
+
+
 def project_picture(folder: Path) -> bytes | None:
     """A PNG of a project, drawn once after each change and cached on disk; None where there is nothing to draw.
 

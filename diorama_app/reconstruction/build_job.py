@@ -19,7 +19,7 @@ from diorama_app.session.session import BUILDING, EditorSession
 from diorama_app.session.shared_document import Textures
 from diorama_app.strings import N_, _, plural
 from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox, Reason
-from diorama_core.errors import DioramaError, EditRefused, InputError
+from diorama_core.errors import DioramaError, InputError
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import Progress
 from diorama_core.project.storage import Project
@@ -145,11 +145,7 @@ def start_build(session: EditorSession, inputs: Inputs, title: str, label: str, 
     if inputs.photo.equirectangular:
         build_whole_room(session, inputs, title)
         return
-    session.need_writable()
-    project = session.project
-    if project is None:
-        raise EditRefused("no project is open")
-
+    project = session.need_project()
     before, others, inputs_before = session.scene.camera, session.further_photos, session.inputs
 
     def work(progress: Progress) -> None:
@@ -186,10 +182,7 @@ def build_whole_room(session: EditorSession, sphere: Inputs, title: str = "") ->
     Raises:
         EditRefused: the project is read-only.
     """
-    session.need_writable()
-    project, before, library = session.project, session.scene, session.offer
-    if project is None:
-        raise EditRefused("no project is open")
+    project, before, library = session.need_project(), session.scene, session.offer
 
     def work(progress: Progress) -> None:
         from diorama_core.layout.recipes import recipe

@@ -73,10 +73,11 @@ def missing_for_joining(scene: Scene) -> str:
     )
 
 
-def need_joinable(scene: Scene, inputs: Inputs | None) -> None:
-    """Raises `EditRefused` where there is nothing that another photo could join."""
+def need_joinable(scene: Scene, inputs: Inputs | None) -> Inputs:
+    """What is said of the photo that others join; raises `EditRefused` where there is none, or no scene of it."""
     if inputs is None or scene.camera is None:
         raise EditRefused("build a scene from a first photo; then add others of the same room")
+    return inputs
 
 
 def fresh_name(file_name: str, taken: Sequence[str]) -> str:
@@ -104,10 +105,8 @@ def join_photo(client: Client) -> None:
     if photo is None:
         raise InputError("choose a photo that was added first")
     session.need_writable()
-    need_joinable(session.scene, session.inputs)
-    project, scene, inputs, photos = session.project, session.scene, session.inputs, session.further_photos
-    if project is None or inputs is None:
-        raise EditRefused("no project is open")
+    inputs = need_joinable(session.scene, session.inputs)
+    project, scene, photos = session.need_project(), session.scene, session.further_photos
     client.view.canvas.close()
 
     def work(progress: Progress) -> None:
@@ -122,10 +121,7 @@ def join_photo(client: Client) -> None:
 def _join_first(client: Client, inputs: Inputs) -> None:
     """Find where the first photo of a scanned room was taken, and bring what it shows into the scene."""
     session = client.session
-    session.need_writable()
-    project, scene, library = session.project, session.scene, session.offer
-    if project is None:
-        raise EditRefused("no project is open")
+    project, scene, library = session.need_project(), session.scene, session.offer
     client.view.canvas.close()
 
     def work(progress: Progress) -> None:

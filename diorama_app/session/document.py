@@ -110,12 +110,13 @@ class Document:
 
     def next_undo(self, is_mine: IsMine = anybodys) -> Entry | None:
         """What `undo` would take back; None when there is nothing."""
-        index = self._next_undo(is_mine)
-        return None if index is None else self.history.entries[index]
+        return self._entry(self._next_undo(is_mine))
 
     def next_redo(self, is_mine: IsMine = anybodys) -> Entry | None:
         """What `redo` would do again; None when there is nothing."""
-        index = self._next_redo(is_mine)
+        return self._entry(self._next_redo(is_mine))
+
+    def _entry(self, index: int | None) -> Entry | None:
         return None if index is None else self.history.entries[index]
 
     def undo(self, is_mine: IsMine = anybodys) -> Entry:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
@@ -33,11 +34,10 @@ Problems = Mapping[str, tuple[str, ...]]
 
 def problems(scene: Scene, library: ShapeLibrary, collisions: Collisions) -> Problems:
     """By object id, what is wrong with it, in a word each; nothing for objects that are fine."""
-    found: dict[str, list[str]] = {}
+    found = defaultdict[str, set[str]](set)
     for pair in collisions.pairs(scene, [o.id for o in scene.objects]):
         for object_id in pair:
-            if COLLIDES not in found.setdefault(object_id, []):
-                found[object_id].append(COLLIDES)
+            found[object_id].add(COLLIDES)
     rooms, planes = rooms_of_objects(scene), scene.architecture.planes
     faces: dict[str, list[Plane]] = {}
     for plane_id, room in rooms_of_planes(scene).items():
@@ -46,9 +46,9 @@ def problems(scene: Scene, library: ShapeLibrary, collisions: Collisions) -> Pro
         if item.hidden:
             continue
         if floats(scene, library, item):
-            found.setdefault(item.id, []).append(FLOATS)
+            found[item.id].add(FLOATS)
         if is_outside_room(faces.get(rooms.get(item.id, ""), planes), item):
-            found.setdefault(item.id, []).append(OUTSIDE)
+            found[item.id].add(OUTSIDE)
     return {i: tuple(sorted(words)) for i, words in found.items()}
 
 
@@ -144,14 +144,13 @@ class Checker:
                 scene, self._scene = self._scene, None
                 self._busy = True
             assert scene is not None
+            found: Problems = {}
             try:
                 found = problems(scene, self._library, self._collisions)
             except DioramaError as error:
                 log.warning("the scene cannot be checked: %s", error)
-                found = {}
             except Exception:  # badges are missing then; the thread goes on with the next scene
                 log.exception("the scene cannot be checked")
-                found = {}
             if found != last:
                 last = found
                 self._on_problems(found)

@@ -75,20 +75,17 @@ class Recovery:
 
     def note(self, project: Project, scene: Scene) -> bool:
         """Remember a change before it is saved; False when it cannot be kept here."""
-        path = self._folder / f"{_place(project)}-{self._session}-{_scene_digest(project)}.json"
+        path = self._folder / f"{_place(project)}-{self._session}-{_digest(project.scene_path)}.json"
         try:
             write_document(path, scene_to_json(scene).encode(), scene_from_json, ProjectError)
         except Exception as error:  # whatever it is, the thread that saves goes on
             log.warning("unsaved changes cannot be stored in %s (%r)", self._folder, error)
             return False
-        self._forget(project, but=path)
+        self.forget(project, but=path)
         return True
 
-    def forget(self, project: Project) -> None:
-        """The project's own file has everything."""
-        self._forget(project)
-
-    def _forget(self, project: Project, but: Path | None = None) -> None:
+    def forget(self, project: Project, but: Path | None = None) -> None:
+        """The project's own file has everything, or one note has."""
         for path in self._folder.glob(f"{_place(project)}-{self._session}*.json"):
             try:
                 if path != but:
@@ -98,7 +95,7 @@ class Recovery:
 
     def find_unsaved(self, project: Project) -> Unsaved | None:
         """The newest change of an earlier session that the project's own file does not have."""
-        saved = _scene_digest(project)
+        saved = _digest(project.scene_path)
         candidates = [u for u in self._others(project) if u.is_settled and u.follows(saved)]
         newest = max(candidates, key=lambda u: u.at, default=None)
         return None if newest is None or _digest(newest.path) == saved else newest
@@ -108,7 +105,7 @@ class Recovery:
 
         Only for who has the project's lock: another's unsaved changes are being saved.
         """
-        saved = _scene_digest(project)
+        saved = _digest(project.scene_path)
         for unsaved in self._others(project):
             if unsaved.is_settled and not unsaved.follows(saved):
                 unsaved.discard()
@@ -130,10 +127,6 @@ class Recovery:
 
 def _place(project: Project) -> str:
     return hashlib.sha256(os.fsencode(project.folder.resolve())).hexdigest()[:_DIGITS]
-
-
-def _scene_digest(project: Project) -> str:
-    return _digest(project.scene_path)
 
 
 def _digest(path: Path) -> str:

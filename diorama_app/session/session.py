@@ -32,7 +32,7 @@ from diorama_app.viewport.client_view import NoticeKind
 from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.scene_view import Viewport
 from diorama_app.viewport.thumbnails import Thumbnails
-from diorama_core.artefacts import Photo, Reason
+from diorama_core.artefacts import Reason
 from diorama_core.editing.clipboard import Clip
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.library.user_library import ProjectShapes, ShapeRecords, offer_shapes
@@ -72,7 +72,6 @@ class EditorSession(SharedDocument):
         self.library: ShapeLibrary = library
         self.projects_dir = projects_dir
         self.low_graphics = low_graphics
-        self.photo: Photo | None = None
         self.notes: tuple[str, ...] = ()
         """Notes of the pipeline about how the scene was made."""
         self.reasons: tuple[Reason, ...] = ()
@@ -111,7 +110,7 @@ class EditorSession(SharedDocument):
         self.thumbnails = Thumbnails(library, self.records)
         self.shapes = ShapeBytes(library, light=low_graphics)
         self.preparer = Preparer(library)
-        self.view = SharedView(self, self.shapes, self.preparer)
+        self.view = SharedView(self, server, self.ui_thread, self.shapes, self.preparer)
 
     @property
     def offer(self) -> ShapeLibrary:
@@ -122,7 +121,6 @@ class EditorSession(SharedDocument):
         """The document changed: save and show it. Nothing that is shown can keep it from being saved."""
         if self.project is not None:
             self.saving.save_soon(self.project, self.document, self.library)
-        self.photo = None if self.inputs is None else self.inputs.photo
         self.refresh(by)
         self.checker.look_at(self.scene)
         self._tell_watchers()
@@ -157,16 +155,14 @@ class EditorSession(SharedDocument):
         is shown, and the page says so.
         """
         read = read_project(project)
-        scene, inputs = read.scene, read.inputs
         if isinstance(self.library, ProjectShapes):
             self.library.show(project.shapes_folder)
         self.saving.take(project)
         self.project, self.textures, self.notes, self.reasons = project, read.textures, read.notes, read.reasons
         self.glances.forget()
-        self.photo = None if inputs is None else inputs.photo
         self.interrupted = project.info().get(BUILDING) is not None
-        self.shapes.expect(len(scene.objects))
-        self.document.open(scene, inputs, read.further_photos)
+        self.shapes.expect(len(read.scene.objects))
+        self.document.open(read.scene, read.inputs, read.further_photos)
         self.saving.is_saved(self.document)
         self.layout_run = None
         for client in self.clients.values():
@@ -175,7 +171,7 @@ class EditorSession(SharedDocument):
         self.refresh()
         for client in self.clients.values():
             self._show_where_left(client)
-        self.checker.look_at(scene)
+        self.checker.look_at(read.scene)
         for line in (self.read_only, self.saving.access.unwritable, *read.damage):
             if line:
                 self.notice_all(line, "bad")
@@ -243,16 +239,6 @@ class EditorSession(SharedDocument):
         self.ui_thread.forget(viser_client.client_id)
         self.refresh_panels()
         self.on_left()
-
-    def notice(self, client_id: int | None, message: str, kind: NoticeKind = "info") -> None:
-        """Tell one person, or all when it is not known which."""
-        client = self.clients.get(client_id) if client_id is not None else None
-        for one in [client] if client is not None else list(self.clients.values()):
-            one.notice(message, kind)
-
-    def notice_all(self, message: str, kind: NoticeKind = "info") -> None:
-        """Tell every browser."""
-        self.notice(None, message, kind)
 
     def post(self, client_id: int | None, task: Callable[[], object], *, key: str | None = None) -> None:
         """Do `task` on the UI thread for one browser, which is told when it fails. May be called from any thread.

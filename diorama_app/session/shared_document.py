@@ -15,7 +15,8 @@ from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.document import Document, IsMine
 from diorama_app.session.project_saving import ProjectSaving
 from diorama_app.strings import _
-from diorama_core.artefacts import FurtherPhoto, Inputs
+from diorama_app.viewport.client_view import NoticeKind
+from diorama_core.artefacts import FurtherPhoto, Inputs, Photo
 from diorama_core.editing.hand_placed import mark_by_hand
 from diorama_core.errors import DioramaError, EditRefused
 from diorama_core.io.bounded import shorten
@@ -57,6 +58,21 @@ class SharedDocument(ABC):
     def further_photos(self) -> tuple[FurtherPhoto, ...]:
         """The other photos of the same room."""
         return self.document.further_photos
+
+    @property
+    def photo(self) -> Photo | None:
+        """The scene's own photo."""
+        return None if self.inputs is None else self.inputs.photo
+
+    def notice(self, client_id: int | None, message: str, kind: NoticeKind = "info") -> None:
+        """Tell one person, or all when it is not known which."""
+        client = self.clients.get(client_id) if client_id is not None else None
+        for one in [client] if client is not None else list(self.clients.values()):
+            one.notice(message, kind)
+
+    def notice_all(self, message: str, kind: NoticeKind = "info") -> None:
+        """Tell every browser."""
+        self.notice(None, message, kind)
 
     def edit(
         self,
@@ -154,6 +170,13 @@ class SharedDocument(ABC):
     def need_writable(self) -> None:
         """Raise `EditRefused` when the open project cannot be changed here."""
         self.saving.access.need_writable()
+
+    def need_project(self) -> Project:
+        """The open project; raises `EditRefused` where there is none, or it cannot be changed here."""
+        self.need_writable()
+        if self.project is None:
+            raise EditRefused("no project is open")
+        return self.project
 
     def undo(self, by: ConnectedClient | str) -> Entry:
         """Take back the last change of a person, or of a program by its name; see `scene.history` for the rule.

@@ -8,24 +8,23 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from functools import partial
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 import viser
 
 from diorama_app.session.connected_client import ConnectedClient
 from diorama_app.session.preparation import Preparer
 from diorama_app.session.redraws import Redraws
-from diorama_app.session.shared_document import Textures
+from diorama_app.session.shared_document import SharedDocument
 from diorama_app.session.ui_thread import UiThread
 from diorama_app.strings import N_, _
 from diorama_app.viewport.camera import DEFAULT_FOV_RAD, room_view
-from diorama_app.viewport.client_view import NoticeKind
 from diorama_app.viewport.mesh_assets import ShapeBytes
 from diorama_app.viewport.photo_overlay import PhotoCamera
 from diorama_app.viewport.scene_view import Viewport
-from diorama_core.artefacts import FurtherPhoto, Photo
+from diorama_core.artefacts import Photo
 from diorama_core.errors import DioramaError
-from diorama_core.scene.types import Scene
+from diorama_core.scene.types import Camera
 
 log = logging.getLogger(__name__)
 
@@ -33,44 +32,25 @@ MESH_OVERLAP_S = 0.45
 """How long an old mesh stays while the browser parses its successor."""
 
 
-@runtime_checkable
-class Shown(Protocol):
-    """What a session says of what it shows; `EditorSession` has it."""
-
-    server: viser.ViserServer
-    ui_thread: UiThread
-    photo: Photo | None
-    textures: Textures
-    clients: dict[int, ConnectedClient]
-
-    @property
-    def scene(self) -> Scene:
-        """The scene as it is now."""
-        ...
-
-    @property
-    def further_photos(self) -> tuple[FurtherPhoto, ...]:
-        """The other photos of the same room."""
-        ...
-
-    def notice_all(self, message: str, kind: NoticeKind = "info") -> None:
-        """Tell every browser."""
-        ...
-
-
 class SharedView:
     """Draws a session's scene on its server, and has its clients' panels drawn."""
 
-    def __init__(self, shown: Shown, shapes: ShapeBytes, preparer: Preparer) -> None:
-        """Draw nothing yet of the session that is shown."""
-        self._shown = shown
-        self._preparer = preparer
-        self.viewport = Viewport(shown.server, shapes, pick=self._pick, drag=self._drag, later=self._replace_later)
-        self.redraws = Redraws(shown.ui_thread, lambda client_id: client_id in shown.clients)
-        self.on_photo_camera: Callable[[Any, str | None], None] | None = None
+    def __init__(
+        self,
+        shown: SharedDocument,
+        server: viser.ViserServer,
+        ui_thread: UiThread,
+        shapes: ShapeBytes,
+        preparer: Preparer,
+    ) -> None:
+        """Draw nothing yet of what is shown."""
+        self._shown, self._server, self._ui_thread, self._preparer = shown, server, ui_thread, preparer
+        self.viewport = Viewport(server, shapes, pick=self._pick, drag=self._drag, later=self._replace_later)
+        self.redraws = Redraws(ui_thread, lambda client_id: client_id in shown.clients)
+        self.on_photo_camera: Callable[[Any, str | None], None] = lambda client, name: None
         """Given who clicked, and the name of the further photo, or None."""
-        self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] | None = None
-        self.on_drag: Callable[[str, viser.SceneNodeDragEvent], None] | None = None
+        self.on_pick: Callable[[str, viser.SceneNodePointerEvent], None] = lambda object_id, event: None
+        self.on_drag: Callable[[str, viser.SceneNodeDragEvent], None] = lambda object_id, event: None
 
     def refresh(self, by: ConnectedClient | None = None) -> None:
         """Bring every browser in line with the document: the scene at once, panels as often as can be followed.
@@ -91,39 +71,32 @@ class SharedView:
 
     def show_whole_room(self) -> None:
         """New visitors and all who are here look at the whole room."""
-        scene, first_view = self._shown.scene, self._shown.server.initial_camera
+        scene, first_view = self._shown.scene, self._server.initial_camera
         first_view.position, first_view.look_at = room_view(scene)
         first_view.fov = float(DEFAULT_FOV_RAD)
         for client in self._shown.clients.values():
             client.selection = ()
             client.doing = None
-            client.view.photo.show_backdrop(None, None, 1.0)
-            client.view.photo.show_overlay(None, None, 0.0)
+            client.view.photo.hide()
             if not client.view.canvas.is_open:
                 client.view.camera.frame(partial(room_view, scene))
 
     def show_photo_camera(self, client: ConnectedClient) -> None:
         """Draw the cameras of all photos for one client; a click on one is told to `on_photo_camera`."""
-        camera, photo = self._shown.scene.camera, self._shown.photo
 
-        def look_through(name: str | None) -> Callable[[], None]:
-            def look() -> None:
-                if self.on_photo_camera is not None:
-                    ask = self.on_photo_camera
-                    client.post(lambda: ask(client, name))
+        def look_through(name: str | None) -> None:
+            client.post(lambda: self.on_photo_camera(client, name))
 
-            return look
-
-        cameras = (
-            []
-            if camera is None
-            else [PhotoCamera("", camera, None if photo is None else photo.rgb, look_through(None))]
+        photos: list[tuple[str, str | None, Camera | None, Photo | None]]
+        photos = [("", None, self._shown.scene.camera, self._shown.photo)]
+        photos += [(f"_{k}", p.name, p.camera, p.inputs.photo) for k, p in enumerate(self._shown.further_photos)]
+        client.view.photo.show_cameras(
+            [
+                PhotoCamera(suffix, camera, None if photo is None else photo.rgb, partial(look_through, name))
+                for suffix, name, camera, photo in photos
+                if camera is not None
+            ]
         )
-        for number, further in enumerate(self._shown.further_photos):
-            if further.camera is not None:
-                rgb = further.inputs.photo.rgb
-                cameras.append(PhotoCamera(f"_{number}", further.camera, rgb, look_through(further.name)))
-        client.view.photo.show_cameras(cameras)
 
     def _draw(self, what: str, draw: Callable[[], None]) -> None:
         """Draw a part of the page; an unexpected error costs that part only."""
@@ -138,12 +111,10 @@ class SharedView:
 
     def _pick(self, object_id: str, event: viser.SceneNodePointerEvent) -> None:
         """Called from viser's event loop, as `_drag` is."""
-        if self.on_pick is not None:
-            self.on_pick(object_id, event)
+        self.on_pick(object_id, event)
 
     def _drag(self, object_id: str, event: viser.SceneNodeDragEvent) -> None:
-        if self.on_drag is not None:
-            self.on_drag(object_id, event)
+        self.on_drag(object_id, event)
 
     def _replace_later(self, task: Callable[[], None]) -> None:
-        self._shown.ui_thread.post(task, after_s=MESH_OVERLAP_S, awaited=False)
+        self._ui_thread.post(task, after_s=MESH_OVERLAP_S, awaited=False)

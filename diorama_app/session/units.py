@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from typing import Literal
 
 from diorama_app.strings import N_, _
@@ -95,19 +96,11 @@ def _infer(unit: Unit, previous: str) -> str:
 
 
 def _number(words: str) -> float:
-    total = 0.0
-    for part in words.replace(",", ".").split():
-        top, below = part.partition("/")[::2]
-        if below and float(below) == 0:
-            raise InputError(_("“{words}” divides by zero; write a length").format(words=words))
-        total += float(top) / float(below) if below else float(top)
-    return total
+    try:
+        return float(sum(Fraction(part) for part in words.replace(",", ".").split()))
+    except ZeroDivisionError:
+        raise InputError(_("“{words}” divides by zero; write a length").format(words=words)) from None
 
 
 def _fraction(sixteenths: int) -> str:
-    if not sixteenths:
-        return ""
-    below = 16
-    while sixteenths % 2 == 0:
-        sixteenths, below = sixteenths // 2, below // 2
-    return f" {sixteenths}/{below}"
+    return f" {Fraction(sixteenths, 16)}" if sixteenths else ""

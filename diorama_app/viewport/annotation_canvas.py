@@ -5,8 +5,6 @@ The page draws it (`static/canvas.js`): a box follows the hand at once, and the 
 
 from __future__ import annotations
 
-import base64
-import io
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,8 +13,8 @@ from typing import Any, Literal
 import numpy as np
 import viser
 from jaxtyping import Bool, UInt8
-from PIL import Image
 
+from diorama_app.projects.pictures import picture_uri
 from diorama_app.strings import N_, _
 from diorama_app.viewport.mesh_assets import reduce
 from diorama_app.web.html import Action, LiveHtml, run_once
@@ -126,7 +124,6 @@ class AnnotationCanvas:
         self._on_event: OnEvent | None = None
         self._size = (1, 1)
         self._shown: tuple[UInt8[np.ndarray, "h w 3"], Mode] | None = None
-        self._names: tuple[str, ...] = ()
         sender = LiveHtml(gui, self._receive)
         sender.show('<button type="button" id="dio-canvas-send" style="display:none" tabindex="-1"></button>')
         self._photo, self._boxes, self._proposals, self._mask, self._lines = (_Told(gui) for _ in range(5))
@@ -164,7 +161,7 @@ class AnnotationCanvas:
         height, width = photo.shape[:2]
         self._size = width, height
         about = {
-            "url": _uri(Image.fromarray(reduce(photo, MAX_SIDE_PX)), "JPEG", quality=JPEG_QUALITY),
+            "url": picture_uri(reduce(photo, MAX_SIDE_PX), "JPEG", quality=JPEG_QUALITY),
             "size": [width, height],
             "mode": mode,
             "hint": _(HINTS[mode]),
@@ -206,7 +203,7 @@ class AnnotationCanvas:
         tint = np.zeros((*mask.shape, 4), dtype=np.uint8)
         tint[mask] = MASK_COLOUR
         step = max(1, max(mask.shape) // MAX_MASK_PX)
-        self._mask.tell({"mask": _uri(Image.fromarray(np.ascontiguousarray(tint[::step, ::step])), "PNG")})
+        self._mask.tell({"mask": picture_uri(np.ascontiguousarray(tint[::step, ::step]), "PNG")})
 
     def close(self) -> None:
         """Put the photo away."""
@@ -284,9 +281,3 @@ def _box(corners: Any, size: tuple[int, int]) -> Box:
     if not (x2 - x1 >= MIN_BOX_PX and y2 - y1 >= MIN_BOX_PX):
         raise ValueError("too small")
     return x1, y1, x2, y2
-
-
-def _uri(picture: Image.Image, kind: str, **options: int) -> str:
-    buffer = io.BytesIO()
-    picture.save(buffer, kind, **options)
-    return f"data:image/{kind.lower()};base64," + base64.b64encode(buffer.getvalue()).decode()

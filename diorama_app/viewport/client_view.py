@@ -13,7 +13,7 @@ from jaxtyping import Float, Int
 from diorama_app.strings import _
 from diorama_app.viewport.annotation_canvas import AnnotationCanvas
 from diorama_app.viewport.camera import ViewCamera
-from diorama_app.viewport.decorations import SELECTED_COLOUR
+from diorama_app.viewport.decorations import SELECTED_COLOUR, Colour
 from diorama_app.viewport.photo_overlay import PhotoOverlay
 from diorama_app.web.html import run_once
 from diorama_core.scene.types import Plane
@@ -36,22 +36,14 @@ class ClientView:
         self.photo = PhotoOverlay(viser_client)
         self.camera = ViewCamera(viser_client, on_move=self.photo.camera_moved)
         self.canvas = AnnotationCanvas(viser_client.gui)
-        self._planes: list[viser.SceneNodeHandle] = []
-        self._tape: list[viser.SceneNodeHandle] = []
-        self._surface: viser.SceneNodeHandle | None = None
-        self._colliders: viser.SceneNodeHandle | None = None
+        self._nodes: dict[str, list[viser.SceneNodeHandle]] = {}
+        """What is drawn in this browser alone, by what it shows."""
         self._distances = viser_client.gui.add_html("")
         self._distances_told = "[]"
 
-    def notice(self, message: str, kind: NoticeKind = "info", seconds: float | None = None) -> None:
-        """A short notice at the edge of the view; what went wrong stays longer.
-
-        Args:
-            message: for the person.
-            kind: how serious it is.
-            seconds: that it stays; None for as long as its kind does.
-        """
-        seconds = seconds or (9.0 if kind == "bad" else 4.0)
+    def notice(self, message: str, kind: NoticeKind = "info") -> None:
+        """A short notice at the edge of the view; what went wrong stays longer."""
+        seconds = 9.0 if kind == "bad" else 4.0
         title = {"info": "Diorama", "good": _("Done"), "bad": _("Could not do that")}[kind]
         colour = {"info": (47, 111, 214), "good": (38, 150, 96), "bad": (210, 62, 50)}[kind]
         self._viser_client.add_notification(title, _(message), color=colour, auto_close_seconds=seconds)
@@ -66,15 +58,12 @@ class ClientView:
 
     def show_measure(self, points: Sequence[tuple[float, float, float]], words: str) -> None:
         """A tape between measured points; none without points."""
-        for node in self._tape:
-            node.remove()
-        self._tape = []
-        scene = self._viser_client.scene
+        tape, scene = self._begin("tape"), self._viser_client.scene
         for index, point in enumerate(points):
-            self._tape.append(scene.add_icosphere(f"/tape/{index}", radius=0.025, color=TAPE_COLOUR, position=point))
+            tape.append(scene.add_icosphere(f"/tape/{index}", radius=0.025, color=TAPE_COLOUR, position=point))
         if len(points) == 2:
             ends = np.array(points)
-            self._tape += [
+            tape += [
                 scene.add_line_segments(
                     "/tape/line", points=ends[None], colors=TAPE_COLOUR, thickness=4.0, thickness_units="screen"
                 ),
@@ -94,26 +83,15 @@ class ClientView:
 
     def show_surface(self, plane: Plane | None) -> None:
         """The outline of the surface that is chosen; none without."""
-        if self._surface is not None:
-            self._surface.remove()
-            self._surface = None
+        nodes = self._begin("surface")
         if plane is not None:
-            ends = plane.polygon + PLANE_LIFT_M * plane.normal
-            self._surface = self._viser_client.scene.add_line_segments(
-                "/surface",
-                points=np.stack([ends, np.roll(ends, -1, axis=0)], axis=1),
-                colors=SELECTED_COLOUR,
-                thickness=4.0,
-                thickness_units="screen",
-            )
+            nodes.append(self._add_edges("/surface", plane, SELECTED_COLOUR, 4.0))
 
     def show_colliders(self, vertices: Float[np.ndarray, "n 3"] | None, faces: Int[np.ndarray, "m 3"]) -> None:
         """The edges of convex bodies, in the world; none without."""
-        if self._colliders is not None:
-            self._colliders.remove()
-            self._colliders = None
+        nodes = self._begin("colliders")
         if vertices is not None:
-            self._colliders = self._viser_client.scene.add_mesh_simple(
+            mesh = self._viser_client.scene.add_mesh_simple(
                 "/colliders",
                 vertices=vertices,
                 faces=faces,
@@ -122,26 +100,30 @@ class ClientView:
                 cast_shadow=False,
                 receive_shadow=False,
             )
+            nodes.append(mesh)
 
     def show_planes(self, planes: Sequence[tuple[str, Plane]]) -> None:
         """The edges of planes, each with its name; none without planes."""
-        for node in self._planes:
-            node.remove()
-        self._planes = []
-        scene = self._viser_client.scene
+        nodes, scene = self._begin("planes"), self._viser_client.scene
         for number, (name, plane) in enumerate(planes):
-            ends = plane.polygon + PLANE_LIFT_M * plane.normal
-            colour = PLANE_COLOURS[plane.role]
-            self._planes += [
-                scene.add_line_segments(
-                    f"/planes/{number}/edges",
-                    points=np.stack([ends, np.roll(ends, -1, axis=0)], axis=1),
-                    colors=colour,
-                    thickness=3.0,
-                    thickness_units="screen",
-                ),
+            nodes += [
+                self._add_edges(f"/planes/{number}/edges", plane, PLANE_COLOURS[plane.role], 3.0),
                 scene.add_label(f"/planes/{number}/name", name, position=plane.centre + PLANE_LIFT_M * plane.normal),
             ]
+
+    def _begin(self, what: str) -> list[viser.SceneNodeHandle]:
+        """An empty list for the nodes of something that is shown; those of what was shown before are gone."""
+        for node in self._nodes.get(what, ()):
+            node.remove()
+        self._nodes[what] = []
+        return self._nodes[what]
+
+    def _add_edges(self, name: str, plane: Plane, colour: Colour, thickness_px: float) -> viser.SceneNodeHandle:
+        ends = plane.polygon + PLANE_LIFT_M * plane.normal
+        edges = np.stack([ends, np.roll(ends, -1, axis=0)], axis=1)
+        return self._viser_client.scene.add_line_segments(
+            name, points=edges, colors=colour, thickness=thickness_px, thickness_units="screen"
+        )
 
 
 def set_theme(gui: viser.GuiApi, *, dark: bool) -> None:

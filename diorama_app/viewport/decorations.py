@@ -5,6 +5,7 @@ Outlines are drawn by the page (`static/silhouettes.js`), which is told of them;
 
 from __future__ import annotations
 
+import contextlib
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -40,7 +41,7 @@ class _Mark:
     """Everything drawn around one object."""
 
     node: str
-    size_m: tuple[float, float, float]
+    height_m: float
     colour: Colour | None = None
     thickness: float = 2.0
     tag: str = ""
@@ -51,7 +52,7 @@ class Decorations:
 
     def __init__(self, viser_client: viser.ClientHandle) -> None:
         self._viser_client = viser_client
-        self._shown: dict[str, tuple[_Mark, list[viser.SceneNodeHandle]]] = {}
+        self._shown: dict[str, tuple[_Mark, viser.SceneNodeHandle | None]] = {}
         self._colliding: frozenset[str] = frozenset()
         self.outlines: tuple[Outline, ...] = ()
         self.on_outlines: Callable[[tuple[Outline, ...]], None] = lambda _: None
@@ -90,11 +91,12 @@ class Decorations:
                 wanted[item.id] = mark
         with self._viser_client.atomic():
             for object_id in [i for i, (mark, _) in self._shown.items() if wanted.get(i) != mark]:
-                for handle in self._shown.pop(object_id)[1]:
-                    remove_quietly(handle)
+                tag = self._shown.pop(object_id)[1]
+                if tag is not None:
+                    remove_quietly(tag)
             for object_id, mark in wanted.items():
                 if object_id not in self._shown:
-                    self._shown[object_id] = (mark, self._draw(mark))
+                    self._shown[object_id] = (mark, self._add_tag(mark) if mark.tag else None)
         outlines = tuple(Outline(m.node, m.colour, m.thickness) for m in wanted.values() if m.colour is not None)
         if outlines != self.outlines:
             self.outlines = outlines
@@ -117,37 +119,31 @@ class Decorations:
         names: bool,
         doubt: str,
     ) -> _Mark | None:
-        x, y, z = item.size_m.round(5).tolist()
-        size = (x, y, z)
+        height = round(float(item.size_m[2]), 5)
         name = item.label[:40] + (_(" (locked)") if item.locked else "")
         problems = "".join(f" ⚠ {_(badge)}" for badge in badges) + doubt
         short = ("⚠" if badges else "") + doubt
         if item.id in self._colliding:
-            return _Mark(node, size, COLLIDING_COLOUR, 3.5, name if names else "")
+            return _Mark(node, height, COLLIDING_COLOUR, 3.5, name if names else "")
         if item.id in selection:
             colour = LOCKED_COLOUR if item.locked else SELECTED_COLOUR
             thickness = 3.5 if selection[-1] == item.id else 2.5
-            return _Mark(node, size, colour, thickness, name + problems if names else short)
+            return _Mark(node, height, colour, thickness, name + problems if names else short)
         for who, colour, theirs in others:
             if item.id in theirs:
-                return _Mark(node, size, colour, 2.5, who)
+                return _Mark(node, height, colour, 2.5, who)
         if names or problems:
-            return _Mark(node, size, None, 0.0, name + problems if names else short)
+            return _Mark(node, height, None, 0.0, name + problems if names else short)
         return None
 
-    def _draw(self, mark: _Mark) -> list[viser.SceneNodeHandle]:
-        scene, made = self._viser_client.scene, []
-        if mark.tag:
-            made.append(
-                scene.add_label(
-                    f"{mark.node}/mark/tag",
-                    text=mark.tag.strip(),
-                    position=(0.0, 0.0, mark.size_m[2] / 2 + 0.06),
-                    anchor="bottom-center",
-                    font_screen_scale=1.0,
-                )
-            )
-        return made
+    def _add_tag(self, mark: _Mark) -> viser.SceneNodeHandle:
+        return self._viser_client.scene.add_label(
+            f"{mark.node}/mark/tag",
+            text=mark.tag.strip(),
+            position=(0.0, 0.0, mark.height_m / 2 + 0.06),
+            anchor="bottom-center",
+            font_screen_scale=1.0,
+        )
 
 
 def is_unsure(item: SceneObject) -> bool:
@@ -158,9 +154,6 @@ def is_unsure(item: SceneObject) -> bool:
 
 def remove_quietly(handle: Any) -> None:
     """Remove a node that may have gone with its parent."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            handle.remove()
-    except Exception:  # its parent went first, and took it along
-        return
+    with contextlib.suppress(Exception), warnings.catch_warnings():  # its parent went first, and took it along
+        warnings.simplefilter("ignore")
+        handle.remove()

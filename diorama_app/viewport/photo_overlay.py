@@ -51,9 +51,8 @@ class PhotoOverlay:
         """How much of the photo lies over the model, 0 to 1."""
         self._through_photo = False
         self._pyramids: dict[str, _Pyramid] = {}
-        self._overlay: viser.ImageHandle | None = None
-        self._backdrop: viser.ImageHandle | None = None
-        self._layer: viser.ImageHandle | None = None
+        self._pictures: dict[str, viser.ImageHandle] = {}
+        """Pictures that are shown, by their nodes."""
 
     def camera_moved(self, through_photo: bool) -> None:
         """Hide the small pyramids in the view through one; take away the layer that only that view explains."""
@@ -109,11 +108,7 @@ class PhotoOverlay:
             photo: RGB, upright.
             depth_m: from the camera.
         """
-        if self._backdrop is not None:
-            self._backdrop.remove()
-            self._backdrop = None
-        if camera is not None and photo is not None:
-            self._backdrop = self._add_picture("/photo_backdrop", camera, reduce(photo, 1280), depth_m)
+        self._show("/photo_backdrop", camera, None if photo is None else reduce(photo, 1280), depth_m)
 
     def show_overlay(self, camera: Camera | None, photo: UInt8[np.ndarray, "h w 3"] | None, opacity: float) -> None:
         """The photo, half transparent, in front of the model; none at opacity 0.
@@ -123,33 +118,35 @@ class PhotoOverlay:
             photo: RGB, upright.
             opacity: 0 to 1.
         """
-        if self._overlay is not None:
-            self._overlay.remove()
-            self._overlay = None
-        self.opacity = 0.0
+        picture, self.opacity = None, 0.0
         if camera is not None and photo is not None and opacity > 0.0:
             small = reduce(photo, 800)
             self.opacity = opacity
             alpha = np.full((*small.shape[:2], 1), round(255 * opacity), dtype=np.uint8)
-            self._overlay = self._add_picture(
-                "/photo_overlay", camera, np.concatenate([small, alpha], axis=2), OVERLAY_DEPTH_M
-            )
+            picture = np.concatenate([small, alpha], axis=2)
+        self._show("/photo_overlay", camera, picture, OVERLAY_DEPTH_M)
+
+    def hide(self) -> None:
+        """Show the photo neither behind the model nor over it."""
+        self.show_backdrop(None, None, 1.0)
+        self.show_overlay(None, None, 0.0)
 
     def show_layer(self, camera: Camera | None, picture: UInt8[np.ndarray, "h w 4"] | None) -> None:
         """A transparent picture over everything that is seen through the photo's camera; none without one."""
-        if self._layer is not None:
-            self._layer.remove()
-            self._layer = None
-        if camera is not None and picture is not None:
-            self._layer = self._add_picture("/photo_evidence", camera, picture, LAYER_DEPTH_M)
+        self._show("/photo_evidence", camera, picture, LAYER_DEPTH_M)
 
-    def _add_picture(
-        self, name: str, camera: Camera, picture: UInt8[np.ndarray, "h w c"], depth_m: float
-    ) -> viser.ImageHandle:
+    def _show(
+        self, name: str, camera: Camera | None, picture: UInt8[np.ndarray, "h w c"] | None, depth_m: float
+    ) -> None:
+        """A picture in place of the one of this name, so far along its camera; none without one."""
+        if name in self._pictures:
+            self._pictures.pop(name).remove()
+        if camera is None or picture is None:
+            return
         k = camera.intrinsics
         centre_camera = np.array([(k.width / 2 - k.cx) / k.fx, (k.height / 2 - k.cy) / k.fy, 1.0]) * depth_m
         R = camera.T_world_camera[:3, :3]
-        return self._viser_client.scene.add_image(
+        self._pictures[name] = self._viser_client.scene.add_image(
             name,
             picture,
             render_width=k.width / k.fx * depth_m,

@@ -8,14 +8,16 @@ it even where they are not drawn. Browsers without a graphics card get bright pa
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import trimesh
 import viser
 from jaxtyping import Float
 
+from diorama_app.viewport.camera import bounds
+from diorama_app.viewport.decorations import Colour, NodeName, remove_quietly
 from diorama_app.viewport.mesh_assets import ShapeBytes, plane_triangles
 from diorama_core.geometry.openings import OPENING_CATEGORIES, with_openings
 from diorama_core.geometry.sun import Daylight, daylight, sun_patches
@@ -45,9 +47,6 @@ MAX_LAMPS, MAX_LAMPS_LIGHT = 12, 4
 ENVIRONMENT = 0.35
 ENVIRONMENT_STEP = 0.07
 """The environment is sent anew where its strength differs by so much: it is a picture."""
-
-Colour = tuple[int, int, int]
-NodeName = Callable[[str], str | None]
 
 
 @dataclass(frozen=True)
@@ -100,7 +99,7 @@ class RoomLightView:
         """Data by which pages cast shadows and let lamps glow; "null" where there is nothing to do."""
         about: dict[str, Any] = {}
         if outside is not None and not self._low:
-            corners = _corners(scene)
+            corners = np.stack(bounds(scene))
             panes = [node_name(o.id) for o in scene.objects if o.category in OPENING_CATEGORIES]
             about = {
                 "sun": "/lights/sun",
@@ -110,7 +109,9 @@ class RoomLightView:
                 "panes": [name for name in panes if name is not None],
             }
         if settings.lamps_on is not None:
-            lamps = [(node_name(o.id), o.id in settings.lamps_on, self._shapes.lamp_shade(o)) for o in _lamps(scene)]
+            from diorama_core.render.lamps import lamps_of  # the ray-caster; opening a project does without it
+
+            lamps = [(node_name(o.id), o.id in settings.lamps_on, self._shapes.lamp_shade(o)) for o in lamps_of(scene)]
             about["lamps"] = [lamp for lamp in lamps if lamp[0] is not None]
         return json.dumps(about, separators=(",", ":")) if about else "null"
 
@@ -121,19 +122,17 @@ class RoomLightView:
             self._sky(SKY_INTENSITY * level, AROUND_INTENSITY * level, SKY_INTENSITY * level, tint=outside.sky)
         else:
             self._sky(settings.exposure, settings.exposure, settings.exposure)
-        shown = outside is None
-        wanted = (scene.light, settings.exposure) if shown else None
+        wanted = (scene.light, settings.exposure) if outside is None else None
         if wanted == self._main:
             return
         self._main = wanted
         for name in ("/lights/main", "/lights/below"):
             self._drop(name)
-        if not shown:
+        if wanted is None:
             return
         if scene.light is None:
-            above, below = (3.0 * settings.exposure, 0.4 * settings.exposure)
-            self._directional("/lights/main", WHITE, above, ABOVE, cast_shadow=not self._low)
-            self._directional("/lights/below", WHITE, below, (0.0, 0.0, -1.0))
+            self._directional("/lights/main", WHITE, 3.0 * settings.exposure, ABOVE, cast_shadow=not self._low)
+            self._directional("/lights/below", WHITE, 0.4 * settings.exposure, (0.0, 0.0, -1.0))
             return
         light = scene.light
         red, green, blue = (round(255 * c) for c in light.colour)
@@ -154,20 +153,17 @@ class RoomLightView:
             self._casters(None)
             self._show_patches((), WHITE)
             return
-        planes = close_room(with_openings(scene)).architecture
         colour, strength = _split(outside.sun)
-        shaded = not self._low
-        intensity = SUN_INTENSITY * strength * (1.0 if shaded else UNSHADED_SUN) * settings.exposure
-        corners = _corners(scene)
+        intensity = SUN_INTENSITY * strength * (UNSHADED_SUN if self._low else 1.0) * settings.exposure
+        corners = np.stack(bounds(scene))
         middle = corners.mean(axis=0)
-        away = middle + 2.0 * _radius(corners) * outside.direction
-        self._directional("/lights/sun", colour, intensity, (float(away[0]), float(away[1]), float(away[2])))
+        x, y, z = (float(v) for v in middle + 2.0 * _radius(corners) * outside.direction)
+        self._directional("/lights/sun", colour, intensity, (x, y, z))
         self._window_light(scene, settings, outside, middle)
-        if not shaded:
-            patches = sun_patches(scene, outside.direction) if strength > 0.0 else []
-            self._show_patches(tuple(patches), colour)
-            return
-        self._casters(planes if strength > 0.0 else None)
+        if self._low:
+            self._show_patches(tuple(sun_patches(scene, outside.direction) if strength > 0.0 else ()), colour)
+        else:
+            self._casters(close_room(with_openings(scene)).architecture if strength > 0.0 else None)
 
     def _window_light(
         self, scene: Scene, settings: LightSettings, outside: Daylight, middle: Float[np.ndarray, 3]
@@ -190,15 +186,12 @@ class RoomLightView:
         self._drop("/lights/walls")
         if planes is None or not planes.planes:
             return
-        vertices, faces, start = [], [], 0
-        for plane in planes.planes:
-            vertices.append(plane.polygon)
-            faces.append(plane_triangles(plane) + start)
-            start += len(plane.polygon)
+        polygons, triangles = [p.polygon for p in planes.planes], [plane_triangles(p) for p in planes.planes]
+        vertices, faces = trimesh.util.append_faces(polygons, triangles)
         self._nodes["/lights/walls"] = self._server.scene.add_mesh_simple(
             "/lights/walls",
-            vertices=np.concatenate(vertices),
-            faces=np.concatenate(faces),
+            vertices=vertices,
+            faces=faces,
             opacity=0.0,
             side="front",
             cast_shadow=True,
@@ -214,11 +207,10 @@ class RoomLightView:
             self._drop(name)
         for number, patch in enumerate(patches):
             name = f"/lights/patch{number}"
-            plane = Plane("patch", "floor", patch)
             self._nodes[name] = self._server.scene.add_mesh_simple(
                 name,
                 vertices=patch @ np.eye(3),
-                faces=plane_triangles(plane),
+                faces=plane_triangles(Plane("patch", "floor", patch)),
                 color=colour,
                 opacity=PATCH_OPACITY,
                 side="front",
@@ -238,7 +230,7 @@ class RoomLightView:
             if lamp is not None:
                 wanted[item.id] = lamp
         for gone in [i for i, (lamp, _) in self._lamps.items() if wanted.get(i) != lamp]:
-            _remove(self._lamps.pop(gone)[1])
+            remove_quietly(self._lamps.pop(gone)[1])
         for lamp_id, lamp in wanted.items():
             if lamp_id not in self._lamps:
                 handle = self._server.scene.add_light_point(
@@ -261,24 +253,12 @@ class RoomLightView:
         """Light from above and from everywhere; 1 is the usual light of a room."""
         scene = self._server.scene
         colour = None if tint is None else _split(tint)[0]
-        for name, usual, level, plain in (
-            ("/lights/sky", 1.0 if self._low else 0.75, above, SKY),
-            ("/lights/around", 0.9 if self._low else 0.55, around, AROUND),
-        ):
-            shade = plain if colour is None else colour
-            wanted = (round(usual * level, 4), shade)
-            if name not in self._nodes:
-                if name == "/lights/sky":
-                    self._nodes[name] = scene.add_light_hemisphere(name, sky_color=shade, ground_color=GROUND)
-                else:
-                    self._nodes[name] = scene.add_light_ambient(name, color=shade)
-            handle = self._nodes[name]
-            if handle.intensity != wanted[0]:
-                handle.intensity = wanted[0]
-            if name == "/lights/sky" and handle.sky_color != shade:
-                handle.sky_color = shade
-            if name == "/lights/around" and handle.color != shade:
-                handle.color = shade
+        if "/lights/sky" not in self._nodes:
+            self._nodes["/lights/sky"] = scene.add_light_hemisphere("/lights/sky", ground_color=GROUND)
+            self._nodes["/lights/around"] = scene.add_light_ambient("/lights/around")
+        sky, all_round = (1.0, 0.9) if self._low else (0.75, 0.55)
+        _set(self._nodes["/lights/sky"], intensity=round(sky * above, 4), sky_color=colour or SKY)
+        _set(self._nodes["/lights/around"], intensity=round(all_round * around, 4), color=colour or AROUND)
         strength = ENVIRONMENT * environment
         if not self._low and abs(strength - self._environment) >= ENVIRONMENT_STEP * max(self._environment, 0.1):
             self._environment = strength
@@ -293,23 +273,24 @@ class RoomLightView:
         *,
         cast_shadow: bool = False,
     ) -> None:
-        handle = self._nodes.get(name)
-        if handle is None:
+        if name in self._nodes:
+            _set(self._nodes[name], color=colour, intensity=intensity, position=position)
+        else:
             self._nodes[name] = self._server.scene.add_light_directional(
                 name, color=colour, intensity=intensity, cast_shadow=cast_shadow, position=position
             )
-            return
-        if handle.color != colour:
-            handle.color = colour
-        if handle.intensity != intensity:
-            handle.intensity = intensity
-        if tuple(handle.position) != position:
-            handle.position = position
 
     def _drop(self, name: str) -> None:
         handle = self._nodes.pop(name, None)
         if handle is not None:
             handle.remove()
+
+
+def _set(handle: Any, **properties: Any) -> None:
+    """Change what differs: each change is a message."""
+    for name, value in properties.items():
+        if not np.array_equal(getattr(handle, name), value):
+            setattr(handle, name, value)
 
 
 def _split(light: Float[np.ndarray, 3]) -> tuple[Colour, float]:
@@ -319,23 +300,5 @@ def _split(light: Float[np.ndarray, 3]) -> tuple[Colour, float]:
     return (red, green, blue), strength
 
 
-def _corners(scene: Scene) -> Float[np.ndarray, "2 3"]:
-    points = [p.polygon for p in scene.architecture.planes] + [o.corners_world for o in scene.objects]
-    every = np.concatenate(points) if points else np.array([[-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]])
-    return np.stack([every.min(axis=0), every.max(axis=0)])
-
-
 def _radius(corners: Float[np.ndarray, "2 3"]) -> float:
     return 0.5 * float(np.linalg.norm(corners[1] - corners[0])) + 0.2
-
-
-def _lamps(scene: Scene) -> tuple[SceneObject, ...]:
-    from diorama_core.render.lamps import lamps_of  # the ray-caster; opening a project does without it
-
-    return lamps_of(scene)
-
-
-def _remove(handle: Any) -> None:
-    from diorama_app.viewport.decorations import remove_quietly
-
-    remove_quietly(handle)

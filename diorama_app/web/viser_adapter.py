@@ -121,7 +121,7 @@ def create_server(
         InputError: the port is taken or the address is not this machine's.
     """
     _check_port(host, port)
-    with _guard_serve(visitors, pictures, projects), contextlib.redirect_stdout(io.StringIO()):
+    with _replace_serve(_serve_with_check(visitors, pictures, projects)), contextlib.redirect_stdout(io.StringIO()):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=False)
     _secure(server, _Uploads(), refused)
     return server
@@ -214,11 +214,6 @@ def component_uuid(handle: Any) -> str:
     return str(handle._impl.uuid)
 
 
-def last_message_arrived(server: viser.ViserServer) -> int:
-    """How many persistent messages the server keeps for late joiners: a measure of leaks."""
-    return len(server._websock_server._broadcast_buffer.message_from_id)
-
-
 def _no_share_url(verbose: bool = True) -> str | None:
     return None
 
@@ -238,9 +233,10 @@ def _check_port(host: str, port: int) -> None:
             ) from error
 
 
-@contextlib.contextmanager
-def _guard_serve(visitors: Visitors, pictures: Pictures | None, projects: ProjectServers | None) -> Iterator[None]:
-    """While it lasts, websocket servers are started with the visitors' check in front."""
+def _serve_with_check(
+    visitors: Visitors, pictures: Pictures | None, projects: ProjectServers | None
+) -> Callable[..., Any]:
+    """Starts websocket servers with the visitors' check in front."""
     original = websockets.asyncio.server.serve
 
     @functools.wraps(original)
@@ -250,8 +246,7 @@ def _guard_serve(visitors: Visitors, pictures: Pictures | None, projects: Projec
         routed = handler if projects is None else _route(handler, projects)
         return original(pace(routed), *args, process_request=check, **kwargs)
 
-    with _replace_serve(serve):
-        yield
+    return serve
 
 
 def _route(handler: ConnectionHandler, projects: ProjectServers) -> ConnectionHandler:

@@ -11,16 +11,17 @@ from threadpoolctl import threadpool_info, threadpool_limits
 import diorama_core as diorama
 from diorama_core.artefacts import CameraEstimate, Inputs
 from diorama_core.errors import InputError
-from diorama_core.library.catalogue import built_in_library
 from diorama_core.perception.camera.estimate import EmbeddedCamera
 from diorama_core.progress import Progress, ProgressEvent
 from diorama_core.scene.room_edits import KNOWN_LENGTH_SIGMA, floor_height
 from tests.cli.room_photo import BOXES, room_picture, write_room
+from tests.few_shapes import few_shapes, stored_seats
 
 
 def test_arrays_and_files_give_the_same_scene(room: diorama.Reconstruction, tmp_path: Path) -> None:
     photo, boxes = write_room(tmp_path)
-    built = diorama.build(str(photo), boxes=boxes, profile="embedded", output=tmp_path / "room")
+    library = stored_seats()
+    built = diorama.build(str(photo), boxes=boxes, profile="embedded", library=library, output=tmp_path / "room")
     assert built.scene == room.scene
     assert diorama.load(tmp_path / "room").scene == built.scene
 
@@ -41,7 +42,11 @@ def test_one_stage_can_be_replaced_and_products_are_done_by_one_thread(room: dio
 
     with threadpool_limits(2, "blas"):  # whatever the program has set
         wider = diorama.build(
-            room_picture(), boxes=BOXES[:1], profile="embedded", stages=lambda stages: replace(stages, camera=Wider())
+            room_picture(),
+            boxes=BOXES[:1],
+            profile="embedded",
+            library=stored_seats(),
+            stages=lambda stages: replace(stages, camera=Wider()),
         )
     assert threads == {1}
     assert wider.scene.camera is not None
@@ -56,7 +61,7 @@ def test_remarks_and_progress_reach_the_caller_and_a_library_can_be_given() -> N
     built = diorama.build(
         room_picture(),
         boxes=odd,
-        library=built_in_library(),
+        library=few_shapes(),
         warn=said.append,
         camera_height_m=2.0,
         progress=Progress(events.append),

@@ -19,6 +19,7 @@ from diorama_core.errors import ProjectError
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.app.small_room import PlainLibrary, furnished_scene
+from tests.few_shapes import SEATS
 
 
 def test_saving_and_loading_give_the_same_room(room: diorama.Reconstruction, tmp_path: Path) -> None:
@@ -26,7 +27,7 @@ def test_saving_and_loading_give_the_same_room(room: diorama.Reconstruction, tmp
     again = diorama.load(tmp_path / "room")
     assert again.scene == room.scene
     assert again.textures.keys() == room.textures.keys()
-    assert again.library_name == "built-in"
+    assert again.library_name == SEATS
     assert again.inputs is not None
     assert room.inputs is not None
     assert np.array_equal(again.inputs.photo.rgb, room.inputs.photo.rgb)

@@ -19,6 +19,7 @@ from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_app.web.viser_adapter import create_server, stop_server
 from diorama_app.web.visitors import Visitors
+from diorama_core.library.record import ShapeLibrary
 from tests.app.page import Page
 from tests.app.people import join
 from tests.app.small_room import PlainLibrary, make_project
@@ -44,11 +45,18 @@ def running(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
 
 
 @pytest.fixture
-def session(server: viser.ViserServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[EditorSession]:
+def session_library() -> ShapeLibrary:
+    return PlainLibrary()
+
+
+@pytest.fixture
+def session(
+    server: viser.ViserServer, session_library: ShapeLibrary, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[EditorSession]:
     monkeypatch.setattr(autosave, "SETTLE_S", 0.01)
     monkeypatch.setattr(redraws, "EVERY_S", 0.0)  # panels are drawn at once
     monkeypatch.setattr(redraws, "SHARE", 1e9)
-    made = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
+    made = EditorSession(server, session_library, tmp_path / "projects", Client)
     # Tests do the UI thread's work: what other threads post to it would draw at the same time.
     made.checker.look_at = lambda scene: None
     made._look_again = lambda: None

@@ -12,7 +12,7 @@ from diorama_app.commands import swap as swapping
 from diorama_app.commands.insert import insert_shape
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_app.web.viser_adapter import create_server, last_message_arrived, stop_server
+from diorama_app.web.viser_adapter import create_server, stop_server
 from diorama_app.web.visitors import Visitors
 from diorama_core.editing import aligning as arranging
 from diorama_core.editing.clipboard import clip_of, paste_clip
@@ -100,7 +100,8 @@ class Soak:
         return pages * 4096 / 1e6
 
     def retained_messages(self) -> int:
-        return last_message_arrived(self.server)
+        """How many messages the server keeps for late joiners: a measure of leaks."""
+        return len(self.server._websock_server._broadcast_buffer.message_from_id)
 
     def close(self) -> None:
         self.session.close()

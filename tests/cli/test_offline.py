@@ -66,7 +66,7 @@ def cut_off() -> list[str]:
 def traced(tmp_path: Path) -> list[str]:
     if not shutil.which("strace"):
         return []
-    return ["strace", "-f", "-qq", "-e", "trace=connect", "-o", str(tmp_path / "trace")]
+    return ["strace", "-f", "--seccomp-bpf", "-qq", "-e", "trace=connect", "-o", str(tmp_path / "trace")]
 
 
 def run(prefix: list[str], asked: Path, code: str, *arguments: object) -> None:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
-import viser
 
 from diorama_app.commands.import_model import FIXES, correct_model, is_own_model
 from diorama_app.commands.insert import insert_shape
@@ -20,22 +18,16 @@ from diorama_core.library.record import Shape
 from diorama_core.library.user_library import UserLibrary
 from diorama_core.scene.types import SceneObject
 from tests.app.people import join
-from tests.app.small_room import PlainLibrary, make_project
+from tests.app.small_room import PlainLibrary
 
 
 @pytest.fixture
-def session(server: viser.ViserServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[EditorSession]:
+def session_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> UserLibrary:
     monkeypatch.setenv("DIORAMA_LIBRARIES", str(tmp_path / "libraries"))
     user_library = UserLibrary(PlainLibrary())
     lying = trimesh.creation.box((1.8, 0.6, 0.3))  # a bookcase that was read lying on its back
     user_library.own().add(pack_shape(Shape("my-case", "box", "my case", (1.0, 1.0, 1.0)), [lying], None, "key", ()))
-    made = EditorSession(server, user_library, tmp_path / "projects", Client)
-    made.checker.look_at = lambda scene: None  # its thread would post to the UI thread
-    made.open_project(make_project(tmp_path / "projects" / "demo"))
-    yield made
-    made.close()
-    server.scene.reset()
-    server.gui.reset()
+    return user_library
 
 
 @pytest.fixture

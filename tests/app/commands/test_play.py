@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 
@@ -12,6 +10,7 @@ from diorama_app.session.client import Playing
 from diorama_core.errors import EditRefused
 from diorama_core.scene import edits
 from tests.app.people import settle
+from tests.waiting import until
 
 pytest.importorskip("mujoco", reason="playing needs MuJoCo (extra 'sim')")
 
@@ -21,23 +20,16 @@ def _lifted(session, client) -> None:
     session.edit("lift", lambda s: edits.move(s, "chair_1", chair.pose.move((0.0, 0.0, 0.4))), by=client)
 
 
-def _until(holds) -> None:
-    end = time.monotonic() + 60.0
-    while not holds():
-        assert time.monotonic() < end
-        time.sleep(0.02)
-
-
 def test_what_falls_and_is_pushed_is_one_undo_step(session, client, monkeypatch) -> None:
     _lifted(session, client)
     before, shown = session.scene, []
     monkeypatch.setattr(session.viewport, "preview", lambda poses: shown.append(poses))
     play(client)
     assert isinstance(client.doing, Playing)
-    _until(lambda: shown and shown[-1]["chair_1"].position[2] < before.object("chair_1").pose.position[2] - 0.3)
+    until(lambda: shown and shown[-1]["chair_1"].position[2] < before.object("chair_1").pose.position[2] - 0.3)
     client.doing.push("chair_2", np.array([0.0, -1.0, 0.0]))
     was = before.object("chair_2").pose.position[1]
-    _until(lambda: shown[-1]["chair_2"].position[1] < was - 0.05)
+    until(lambda: shown[-1]["chair_2"].position[1] < was - 0.05)
     assert session.scene is before, "the document waits"
     play(client)
     settle(session)
@@ -66,7 +58,7 @@ def test_an_empty_room_is_no_playground(session, client) -> None:
 
 def test_where_nothing_moves_there_is_no_step(session, client) -> None:
     play(client)
-    _until(lambda: session.jobs.status is not None and "push" in session.jobs.status.message)
+    until(lambda: session.jobs.status is not None and "push" in session.jobs.status.message)
     before = session.scene
     play(client)
     settle(session)

@@ -7,10 +7,8 @@ import pytest
 pytest.importorskip("fastapi", reason="needs FastAPI (pip install 'diorama[api]')")
 
 from fastapi import Request  # after the check for its library
-from pydantic import ValidationError
 
 from diorama_app.http_api.answers import png, respond
-from diorama_app.http_api.forms import EditRequest
 from diorama_app.http_api.project_answers import check_answer, object_answer
 from diorama_core.api import Reconstruction
 from diorama_core.artefacts import Reason
@@ -42,11 +40,6 @@ def test_a_picture_is_of_the_scene_that_is_given() -> None:
     room = Reconstruction(SCENE, PlainLibrary(), {})
     without = replace(room, scene=edits.remove(SCENE, ["table_1", "lamp_1"]))
     assert png(room, "top", (80, 60)) != png(without, "top", (80, 60))
-
-
-def test_an_edit_is_typed_or_in_words() -> None:
-    with pytest.raises(ValidationError, match="either edits or words"):
-        EditRequest(version="a.0", edits=[{"do": "remove", "objects": ["lamp_1"]}], words="remove the lamp")
 
 
 @pytest.mark.parametrize(("error", "status"), [(EditRefused("a\nb"), 422), (ProjectError("damaged"), 500)])

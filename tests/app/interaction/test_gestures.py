@@ -40,6 +40,7 @@ def gestures(session: EditorSession, client: Client) -> Gestures:
 def pick(gestures: Gestures, object_id: str, modifier: pointer.Modifier | None = None, at=pointer.MIDDLE) -> None:
     visitor = gestures._client.viser_client
     gestures.pick(object_id, pointer.clicked(visitor, object_id, at=at, modifier=modifier))
+    settle(gestures._session)
 
 
 def drag(session: EditorSession, gestures: Gestures, object_id: str, by: tuple, *, phases=("update", "end"), alt=False):
@@ -81,16 +82,12 @@ def turn(session: EditorSession, gestures: Gestures, phase: str, pose: Pose) -> 
 
 def test_a_click_selects_and_a_modified_one_adds_or_takes_away(session, client, gestures) -> None:
     pick(gestures, "chair_1")
-    settle(session)
     assert client.selection == ("chair_1",)
     pick(gestures, "lamp_1", "shift")
-    settle(session)
     assert client.selection == ("chair_1", "lamp_1")
     pick(gestures, "chair_1", "cmd/ctrl")
-    settle(session)
     assert client.selection == ("lamp_1",)
     pick(gestures, "chair_2")
-    settle(session)
     assert client.selection == ("chair_2",)
 
 
@@ -98,7 +95,6 @@ def test_a_click_beside_selects_nothing_but_the_echo_of_an_objects_own_click_doe
     session, client, gestures
 ) -> None:
     pick(gestures, "chair_1", at=(0.4, 0.6))
-    settle(session)
     gestures._click(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=True)
     assert client.selection == ("chair_1",)
     gestures._click(np.zeros(3), np.array([0.0, 1.0, 0.0]), on_object=False)
@@ -109,7 +105,6 @@ def test_while_a_place_is_asked_for_a_click_puts_the_shape_there(session, client
     before = len(session.scene.objects)
     client.doing = Placing("chair_c")
     pick(gestures, "table_1")
-    settle(session)
     assert client.selection == ()
     eye = np.array([-1.2, 0.5, 2.0])
     gestures._click(eye, np.array([0.0, 0.0, -1.0]), on_object=False)

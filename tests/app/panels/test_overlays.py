@@ -80,7 +80,7 @@ def test_what_is_no_share_changes_nothing(client, page: Page, panel: Compare, wr
 
 
 def test_without_a_photo_there_is_nothing_to_compare(session, client, page: Page, views) -> None:
-    session.photo = None
+    session.document.open(session.scene)
     Compare(page, client, views).refresh()
     assert not page.shows("over", kind="change")
 

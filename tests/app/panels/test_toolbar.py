@@ -42,7 +42,6 @@ def test_switches_show_their_state(client, page, toolbar) -> None:
 
 def test_what_needs_a_photo_is_greyed_out_without_one(session, client, page, toolbar) -> None:
     assert page.shows("run", "view_photo")
-    session.photo = None
     session.document.open(type(session.scene)(objects=session.scene.objects))
     session.refresh()
     assert not page.shows("run", "view_photo")

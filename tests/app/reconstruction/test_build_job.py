@@ -8,20 +8,21 @@ import numpy as np
 import pytest
 
 from diorama_app.projects.begin import begin_project
-from diorama_app.projects.uploads import Upload, decode
 from diorama_app.reconstruction.build_job import NewScene, build, show_built, start_build
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
-from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox
-from diorama_core.io.limited import LimitedProcess
+from diorama_core.artefacts import FurtherPhoto, Inputs, LabelledBox, Photo
+from diorama_core.multiview import sphere_scene
 from diorama_core.multiview.rebuilding import Rebuilt
+from diorama_core.multiview.rooms import JoinedRoom, PosedInputs
+from diorama_core.multiview.sphere_scene import SphereScene
+from diorama_core.perception.inputs import ReadInputs
 from diorama_core.pipeline.run import Built
 from diorama_core.project import build as build_module
 from diorama_core.project.storage import Project
 from diorama_core.scene.types import Camera, Scene
 from tests.app.small_room import photo_camera, plain_photo
 from tests.built import built_scene
-from tests.multiview.spheres import sphere_with_wardrobe
 from tests.waiting import until
 
 
@@ -133,26 +134,36 @@ def test_who_was_marking_sees_the_scene_after_a_build(session: EditorSession, cl
     assert not client.view.canvas.is_open
 
 
-@pytest.mark.slow
 def test_a_360_degree_photo_that_was_marked_becomes_a_room_with_its_views(
-    session: EditorSession, client: Client
+    session: EditorSession, client: Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    picture, boxes = sphere_with_wardrobe(1.4)
-    given = decode(Upload(picture, "all.png", boxes=boxes, sphere=True), LimitedProcess())
-    session.open_project(begin_project(session.projects_dir, "all.png", given, picture))
+    """What a build makes of one is tested in `tests/app/projects/test_posed_build.py`."""
+    photo = replace(plain_photo(256, 128), equirectangular=True)
+    given = Inputs(photo, (LabelledBox((9.0, 9.0, 50.0, 90.0), "table", "table"),))
+    views = tuple(PosedInputs(Inputs(plain_photo()), camera) for camera in (photo_camera(), turned(photo_camera())))
+    scene = session.scene
+
+    def build_sphere(photo: Photo, boxes: object, *rest: object) -> SphereScene:
+        assert boxes == given.boxes
+        room = JoinedRoom(scene, (), built_scene(scene), {}, None, ("a note",), ((), ()))
+        return SphereScene(room, views, ("ahead.jpg", "behind.jpg"), np.eye(3), ())
+
+    monkeypatch.setattr(sphere_scene, "build_sphere", build_sphere)
+    session.open_project(begin_project(session.projects_dir, "all.png", ReadInputs(given, ()), b"as it came"))
     assert session.is_unbuilt
     before = session.scene
     session.commit("add", before, further=(FurtherPhoto("mine", Inputs(plain_photo()), photo_camera()),))
     build(session)
-    until(lambda: session.jobs.status is None and bool(session.scene.objects), seconds=120)
-    assert [o.category for o in session.scene.objects] == ["wardrobe"]
+    until(lambda: session.jobs.status is None and bool(session.scene.objects))
+    assert session.scene is scene
+    assert session.notes == ("a note",)
     assert session.inputs is not None
-    assert not session.inputs.photo.equirectangular
-    sphere, *views, mine = session.further_photos
-    assert sphere.inputs.photo.equirectangular
-    assert sphere.inputs.boxes == given.inputs.boxes
-    assert len(views) == 7
-    assert all(p.is_placed for p in (sphere, *views))
+    assert session.inputs.photo is views[0].inputs.photo
+    assert session.inputs.intrinsics == views[0].camera.intrinsics
+    sphere, behind, mine = session.further_photos
+    assert sphere.inputs == given
+    assert (behind.name, behind.camera) == ("behind", views[1].camera)
+    assert sphere.is_placed
     assert mine.name == "mine"
     assert not mine.is_placed, "where it was taken in the new room is not known"
     session.undo(client)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,16 +12,13 @@ from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
 from diorama_core.artefacts import Inputs, LabelledBox, Photo
 from diorama_core.errors import EditRefused, InputError
-from diorama_core.importing.scene_import import import_scene
+from diorama_core.importing import photo_of_scan
+from diorama_core.importing.opening import Opened
 from diorama_core.project.further_photos import load_photos
+from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
-from diorama_core.synthesis.artefacts import photo_only
 from tests.app.people import settle
-from tests.app.small_room import plain_photo
-from tests.few_shapes import few_shapes
-from tests.importing.roomplan_files import write_scan_of
-from tests.importing.test_photo_of_scan import KNOWN as SCANNED
-from tests.importing.test_photo_of_scan import room as scanned_room
+from tests.app.small_room import photo_camera, plain_photo
 
 BOX = LabelledBox((10.0, 20.0, 60.0, 80.0), "chair", "chair")
 
@@ -122,23 +118,30 @@ def test_the_first_photo_of_a_scan_is_marked_and_one_of_elsewhere_changes_nothin
     assert session.inputs is None
 
 
-@pytest.mark.slow
 def test_the_first_photo_of_a_scan_brings_looks_and_new_things(
-    session: EditorSession, client: Client, tmp_path: Path
+    session: EditorSession, client: Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    room, truth, _ = scanned_room()
-    before = import_scene(write_scan_of(tmp_path / "room.json", room)).opened.scene
-    session.library = few_shapes(before)
-    session.document.open(before, None, ())
-    whole = photo_only(truth)
-    marked = tuple(b for b in whole.boxes if b.category in SCANNED or b.category in ("door", "window", "plant"))
-    take_photo(client, "room.jpg", replace(whole, boxes=marked))
+    """What it brings is tested in `tests/importing/test_photo_of_scan.py`."""
+    scanned(session)
+    before, grey = session.scene, np.full((4, 4, 3), 99, np.uint8)
+
+    def with_photo(scan: Opened, given: Inputs, library: object, choose, layout, progress: object) -> Opened:
+        assert scan.scene is before
+        assert given.boxes == (BOX,)
+        assert choose(given).camera is not None
+        assert layout(frozenset()) is not None
+        chair = edits.duplicate(before, "chair_1")[0]
+        seen = edits.set_planes(replace(chair, camera=photo_camera()), [replace(chair.plane("floor"), texture="grey")])
+        return Opened(seen, {"grey": grey}, ("room.png joins the scan",), photo=given.photo, boxes=given.boxes)
+
+    monkeypatch.setattr(photo_of_scan, "with_photo_of_scan", with_photo)
+    take_photo(client, "room.png", Inputs(plain_photo(), (BOX,)))
     join_photo(client)
-    settle(session, 400.0)
+    settle(session)
     scene = session.scene
     assert scene.camera is not None
     assert {o.id for o in before.objects} < {o.id for o in scene.objects}
-    assert {p.texture for p in scene.architecture.planes} & set(session.textures)
-    assert len(session.inputs.boxes) == len(marked)
+    assert session.textures["grey"] is grey
+    assert session.inputs.boxes == (BOX,)
     session.undo(client)
     assert session.scene is before

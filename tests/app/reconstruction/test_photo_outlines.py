@@ -26,7 +26,7 @@ def test_another_photo_is_not_shown_with_the_old_outlines(session, client) -> No
     outlines = PhotoOutlines(session)
     outlines.find(client)
     settle(session)
-    session.photo = replace(session.photo, name="another")
+    session.document.open(session.scene, replace(session.inputs, photo=replace(session.photo, name="another")))
     assert outlines.objects is None
 
 

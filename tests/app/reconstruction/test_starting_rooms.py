@@ -4,8 +4,9 @@ import pytest
 
 from diorama_app.reconstruction.starting_rooms import open_example, start_empty_room
 from diorama_core.errors import EditRefused, InputError
-from diorama_core.library.catalogue import built_in_library
+from diorama_core.synthesis import example_rooms
 from tests.app.people import settle
+from tests.app.small_room import furnished_scene
 
 
 def test_an_empty_room_is_a_project_of_its_own_and_a_bad_one_is_none(session, client) -> None:
@@ -19,11 +20,11 @@ def test_an_empty_room_is_a_project_of_its_own_and_a_bad_one_is_none(session, cl
     assert session.project.load_scene() == session.scene
 
 
-def test_an_example_is_furnished_in_the_background(session, client) -> None:
+def test_an_example_is_furnished_in_the_background(session, client, monkeypatch) -> None:
+    monkeypatch.setattr(example_rooms, "example_room", lambda room, library: furnished_scene())
     with pytest.raises(InputError, match="no such example"):
         open_example(client, "castle")
-    session.library = built_in_library()
     open_example(client, "study")
     settle(session)
     assert session.project.name == "Study"
-    assert len(session.scene.objects) > 5
+    assert session.scene.objects == furnished_scene().objects

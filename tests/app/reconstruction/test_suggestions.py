@@ -28,6 +28,13 @@ BOX = (10.0, 10.0, 50.0, 50.0)
 shipped = pytest.mark.skipif(not assets.has_own_recogniser(), reason="no weights are shipped")
 
 
+def clicked(suggestions: Suggestions, x: float, y: float) -> LabelledBox | None:
+    """What is meant by a click."""
+    told = queue.Queue[LabelledBox | None]()
+    suggestions.suggest(x, y, (), told.put)
+    return told.get(timeout=60)
+
+
 @shipped
 def test_names_arrive_and_stay() -> None:
     ready = threading.Event()
@@ -55,11 +62,8 @@ def test_boxes_of_a_photo_arrive_and_lie_in_it() -> None:
 
 @shipped
 def test_a_click_tells_a_box_around_it_with_its_likeliest_name() -> None:
-    told: queue.Queue[LabelledBox | None] = queue.Queue()
-    photo = plain_photo()
-    suggestions = Suggestions(photo, lambda: None)
-    suggestions.suggest(320.0, 300.0, (), told.put)
-    found = told.get(timeout=60)
+    suggestions = Suggestions(plain_photo(), lambda: None)
+    found = clicked(suggestions, 320.0, 300.0)
     assert found is not None
     assert found.box[0] <= 320 <= found.box[2]
     assert found.box[1] <= 300 <= found.box[3]
@@ -148,19 +152,17 @@ def test_a_network_for_everyday_objects_proposes_names_and_is_clicked(
     install(store, "yolox-nano", [graph])
     monkeypatch.setenv("DIORAMA_MODELS", str(store.folder))
     photo = plain_photo(WIDTH, HEIGHT)
-    ready, told = threading.Event(), queue.Queue[LabelledBox | None]()
+    ready = threading.Event()
     suggestions = Suggestions(photo, ready.set)
     suggestions.boxes()
     assert ready.wait(60)
     chair = suggestions.boxes()[0]
     assert chair.label == "chair"
     np.testing.assert_allclose(chair.box, CHAIR, atol=1.0)
-    x, y = (CHAIR[0] + CHAIR[2]) / 2, (CHAIR[1] + CHAIR[3]) / 2
-    suggestions.suggest(x, y, (), told.put)
-    clicked = told.get(timeout=60)
-    assert clicked is not None
-    np.testing.assert_allclose(clicked.box, CHAIR, atol=1.0)
-    assert "chair" in suggestions.names([clicked.box], 0)[0], "its word counts beside what the thing looks like"
+    meant = clicked(suggestions, (CHAIR[0] + CHAIR[2]) / 2, (CHAIR[1] + CHAIR[3]) / 2)
+    assert meant is not None
+    np.testing.assert_allclose(meant.box, CHAIR, atol=1.0)
+    assert "chair" in suggestions.names([meant.box], 0)[0], "its word counts beside what the thing looks like"
 
 
 @shipped
@@ -171,9 +173,7 @@ def test_a_damaged_network_does_not_stop_marking(
     (tmp_path / "y.onnx").write_bytes(b"no graph")
     install(store, "yolox-nano", [tmp_path / "y.onnx"])
     monkeypatch.setenv("DIORAMA_MODELS", str(store.folder))
-    told = queue.Queue[LabelledBox | None]()
-    Suggestions(plain_photo(), lambda: None).suggest(320.0, 300.0, (), told.put)
-    assert told.get(timeout=60) is not None
+    assert clicked(Suggestions(plain_photo(), lambda: None), 320.0, 300.0) is not None
     assert "marking goes on without the network" in caplog.text
 
 
@@ -192,21 +192,17 @@ def test_without_weights_nothing_is_suggested(monkeypatch: pytest.MonkeyPatch, t
     assert suggestions.names([BOX], 0) == ()
     assert suggestions.boxes() == ()
     assert suggestions.outline(BOX) is None
-    told: queue.Queue[LabelledBox | None] = queue.Queue()
-    suggestions.suggest(20.0, 20.0, (), told.put)
-    assert told.get(timeout=60) is None
+    assert clicked(suggestions, 20.0, 20.0) is None
 
 
 @shipped
 def test_a_click_waits_for_no_photo_that_is_looked_at_ahead(monkeypatch: pytest.MonkeyPatch) -> None:
     ahead, begin = ThreadPoolExecutor(1), threading.Event()
     monkeypatch.setattr(suggesting, "_AHEAD", ahead)
-    told = queue.Queue[LabelledBox | None]()
     suggestions = Suggestions(plain_photo(), lambda: None)
     ahead.submit(begin.wait, 60)
     suggestions.boxes()
-    suggestions.suggest(20.0, 20.0, (), told.put)
-    told.get(timeout=60)
+    clicked(suggestions, 20.0, 20.0)
     assert not begin.is_set()
     begin.set()
     ahead.shutdown()

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-import viser
 
-from diorama_app.commands.camera_presets import Views
-from diorama_app.commands.definitions import build_commands
 from diorama_app.commands.edit import rename
+from diorama_app.commands.registry import CommandTable
 from diorama_app.panels.projects import Projects
 from diorama_app.projects import manage as project_care
-from diorama_app.reconstruction.photo_outlines import PhotoOutlines
 from diorama_app.session.autosave import Unwritten
 from diorama_app.session.client import Client
 from diorama_app.session.session import EditorSession
@@ -24,18 +20,8 @@ from diorama_core.artefacts import Inputs
 from diorama_core.scene import edits
 from diorama_core.scene.types import Scene
 from tests.app.people import join
-from tests.app.small_room import PlainLibrary, furnished_scene, make_project, plain_photo
+from tests.app.small_room import furnished_scene, make_project, plain_photo
 from tests.io.test_bombs import png
-
-
-@pytest.fixture
-def session(server: viser.ViserServer, tmp_path: Path) -> Iterator[EditorSession]:
-    made = EditorSession(server, PlainLibrary(), tmp_path / "projects", Client)
-    made.open_project(make_project(tmp_path / "projects" / "demo"))
-    yield made
-    made.close()
-    server.scene.reset()
-    server.gui.reset()
 
 
 def moved_to(x: float) -> Callable[[Scene], Scene]:
@@ -46,16 +32,14 @@ def moved_to(x: float) -> Callable[[Scene], Scene]:
     return change
 
 
-@pytest.mark.parametrize("x", [float("nan"), float("inf"), 1e12])
-def test_a_field_that_holds_no_number_says_so(session: EditorSession, x: float) -> None:
-    client = join(session)
-    before = session.scene
-    client.post(lambda: session.edit("move", moved_to(x), by=client))
-    assert session.ui_thread.wait()
-    told = client.viser_client.told
-    assert len(told) == 1
-    assert "Something went wrong" not in told[0]
-    assert "value" in told[0]
+def test_a_field_that_holds_no_number_says_so(session: EditorSession, client: Client) -> None:
+    before, told = session.scene, client.viser_client.told
+    for count, x in enumerate((float("nan"), float("inf"), 1e12), start=1):
+        client.post(lambda x=x: session.edit("move", moved_to(x), by=client))
+        assert session.ui_thread.wait()
+        assert len(told) == count
+        assert "Something went wrong" not in told[-1]
+        assert "value" in told[-1]
     assert session.scene == before
 
 
@@ -102,54 +86,42 @@ def test_an_edit_is_saved_and_the_others_are_redrawn_when_a_panel_fails(session:
 
 
 def test_the_scene_is_saved_when_the_view_cannot_be_drawn(
-    session: EditorSession, monkeypatch: pytest.MonkeyPatch
+    session: EditorSession, client: Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fails(*_: object) -> None:
         raise RuntimeError("deque mutated during iteration")
 
-    client = join(session)
     monkeypatch.setattr(session.viewport, "show", fails)
     edited(session, client)
     assert saved_label(session) == "throne"
 
 
 DAMAGED = {
-    "no text": b"\xff\xfe\x00format",
-    "version in words": json.dumps({"format": "diorama-project", "version": "1"}).encode(),
-    "not a table": b"[]",
-    "deep": b"[" * 100_000,
-    "huge number": b'{"format": "diorama-project", "version": ' + b"9" * 5000 + b"}",
-    "name is a table": json.dumps({"format": "diorama-project", "version": 1, "name": {"a": 1}}).encode(),
+    "project.json": (
+        b"\xff\xfe\x00format",
+        json.dumps({"format": "diorama-project", "version": "1"}).encode(),
+        b"[]",
+        b"[" * 100_000,
+        b'{"format": "diorama-project", "version": ' + b"9" * 5000 + b"}",
+        json.dumps({"format": "diorama-project", "version": 1, "name": {"a": 1}}).encode(),
+    ),
+    "photo.jpg": (png(20_000, 12_000, 8, 2, 3), b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n"),
 }
 
 
-@pytest.mark.parametrize("kind", DAMAGED)
-def test_another_projects_damaged_file_is_that_projects_matter(session: EditorSession, kind: str) -> None:
+@pytest.mark.parametrize("file", DAMAGED)
+def test_another_projects_damaged_file_is_that_projects_matter(
+    session: EditorSession, client: Client, commands: CommandTable, file: str
+) -> None:
     other = make_project(session.projects_dir / "other").folder
-    (other / "project.json").write_bytes(DAMAGED[kind])
-    assert project_care.name_of(other) == "other"
-    client = join(session)
-    client.panels = [projects_panel(session, client)]
-    edited(session, client)
-    assert saved_label(session) == "throne"
+    client.panels = [Projects(session.server.gui, client, commands, lambda name, content: None)]
+    for number, content in enumerate(DAMAGED[file]):
+        (other / file).write_bytes(content)
+        assert project_care.name_of(other) == "other"
+        session.glances.forget()
+        edited(session, client, f"edit {number}")
+        assert saved_label(session) == f"edit {number}"
     assert client.viser_client.told == []
-
-
-@pytest.mark.parametrize("photo", [png(20_000, 12_000, 8, 2, 3), b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n"])
-def test_another_projects_photo_that_cannot_be_shown_is_left_out(session: EditorSession, photo: bytes) -> None:
-    other = make_project(session.projects_dir / "other").folder
-    (other / "photo.jpg").write_bytes(photo)
-    client = join(session)
-    client.panels = [projects_panel(session, client)]
-    edited(session, client)
-    assert saved_label(session) == "throne"
-    assert client.viser_client.told == []
-
-
-def projects_panel(session: EditorSession, client: Client) -> Projects:
-    nothing = [lambda client: None] * 2
-    commands = build_commands(session, Views(session), PhotoOutlines(session), lambda g: False, *nothing)
-    return Projects(session.server.gui, client, commands, lambda name, content: None)
 
 
 def test_what_is_newer_replaces_what_waits_and_the_rest_stays() -> None:

@@ -93,13 +93,3 @@ def test_a_damaged_scene_opens_with_the_newest_version_that_can_be_read(
     told = client.viser_client.told[-1]
     assert "is shown, since the scene file is not valid JSON" in told
     assert len(told) < 400
-
-
-def test_a_damaged_photo_does_not_keep_the_scene_shut(new_room: NewRoom, tmp_path: Path) -> None:
-    project = make_project(tmp_path / "projects" / "demo")
-    (project.stages_folder / "inputs.zip").write_bytes(b"PK")
-    session = new_room()
-    client = join(session)
-    session.open_project(project)
-    assert session.scene == furnished_scene()
-    assert "photo cannot be read back" in client.viser_client.told[-1]

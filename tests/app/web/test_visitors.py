@@ -55,9 +55,8 @@ def test_where_others_can_reach_it_there_is_a_token(host: str) -> None:
     assert with_token("127.0.0.1", None) is None
 
 
-@pytest.mark.parametrize("host", ["0.0.0.0"])
-def test_a_server_for_everybody_still_knows_its_names(host: str) -> None:
-    made = create_server(host=host, port=0, label="test", visitors=Visitors(host, "s3cret"))
+def test_a_server_for_everybody_still_knows_its_names() -> None:
+    made = create_server(host="0.0.0.0", port=0, label="test", visitors=Visitors("0.0.0.0", "s3cret"))
     try:
         assert fetch(made, "/?token=s3cret", Host="evil.example")[0] == 403
         assert fetch(made, "/?token=s3cret", Host="rebound.example:80")[0] == 403
