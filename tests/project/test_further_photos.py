@@ -29,6 +29,12 @@ def project(tmp_path: Path) -> Project:
     return make_project(tmp_path / "demo")
 
 
+def save_two(project: Project) -> tuple[FurtherPhoto, ...]:
+    photos = tuple(FurtherPhoto(n, Inputs(plain_photo())) for n in ("one", "two"))
+    save_photos(project, photos)
+    return photos
+
+
 def shifted(scene: Scene, by_m: float) -> Scene:
     """The scene with a chair moved along x."""
     return move(scene, "chair_1", scene.object("chair_1").pose.move((by_m, 0.0, 0.0)))
@@ -49,8 +55,7 @@ def test_photos_come_back_as_they_were_saved(project: Project) -> None:
 
 
 def test_a_photo_that_is_saved_is_not_written_again_and_one_taken_out_is_gone(project: Project) -> None:
-    one, two = (FurtherPhoto(n, Inputs(plain_photo())) for n in ("one", "two"))
-    save_photos(project, (one, two))
+    one, two = save_two(project)
     path = project.folder / "photos" / "one.zip"
     before = path.stat().st_mtime_ns
     save_photos(project, (one,), (one, two))
@@ -63,8 +68,7 @@ def test_a_photo_that_is_saved_is_not_written_again_and_one_taken_out_is_gone(pr
 
 
 def test_a_damaged_photo_is_named_and_the_others_are_read(project: Project) -> None:
-    one, two = (FurtherPhoto(n, Inputs(plain_photo())) for n in ("one", "two"))
-    save_photos(project, (one, two))
+    save_two(project)
     (project.folder / "photos" / "one.zip").write_bytes(b"nothing")
     found, damage = load_photos(project)
     assert [p.name for p in found] == ["two"]
