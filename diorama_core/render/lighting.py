@@ -76,7 +76,7 @@ def studio(bounds: Float[np.ndarray, "2 3"], toward_camera: Float[np.ndarray, "3
         bounds: Corners of what is lit, metres.
         toward_camera: Horizontal direction from the room to the viewer.
     """
-    centre, radius, distance = _around(bounds)
+    centre, radius, distance = _ball(bounds)
     back = unit(np.array([toward_camera[0], toward_camera[1], 0.0]) + 1e-9)
     left = np.cross(back, [0.0, 0.0, 1.0])
     direction = unit(0.8 * back + 0.34 * left + 0.8 * np.array([0.0, 0.0, 1.0]))
@@ -110,7 +110,7 @@ def room_lighting(bounds: Float[np.ndarray, "2 3"], light: RoomLight) -> Lightin
         bounds: Corners of what is lit, metres.
         light: As the photo tells it.
     """
-    centre, radius, distance = _around(bounds)
+    centre, radius, distance = _ball(bounds)
     x, y, z = light.direction
     direction = unit(np.array([x, y, max(z, MIN_ELEVATION)]))
     across = unit(np.cross(direction, [0.0, 0.0, 1.0]) + np.array([1e-6, 0.0, 0.0]))
@@ -128,7 +128,7 @@ def room_lighting(bounds: Float[np.ndarray, "2 3"], light: RoomLight) -> Lightin
     )
 
 
-def _around(bounds: Float[np.ndarray, "2 3"]) -> tuple[Float[np.ndarray, "3"], float, float]:
+def _ball(bounds: Float[np.ndarray, "2 3"]) -> tuple[Float[np.ndarray, "3"], float, float]:
     """Centre and radius of a ball around what is lit, and the distance of its window, metres."""
     radius = max(0.5 * float(np.linalg.norm(bounds[1] - bounds[0])), 0.1)
     return bounds.mean(axis=0), radius, 1.7 * radius

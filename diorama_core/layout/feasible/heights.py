@@ -67,12 +67,12 @@ def _chains(problem: Problem, observations: PhotoObservations) -> _Chains:
         if i in own_foot:
             rows[i, own_foot[i]] = 1.0
             continue
-        j, place = int(problem.parent[i]), _observed_place(problem, i)
+        j, place = int(problem.parent[i]), _place(problem, i)
         if j in column:
             rows[i], constant[i] = rows[j], constant[j]
             rows[i, column[j]] += place.level / problem.shape_size[j, 2] + 0.5
         else:
-            constant[i] = problem.in_world(i, place).level
+            constant[i] = problem.to_world(i, place).level
     return _Chains(tuple(members), rows, constant)
 
 
@@ -86,7 +86,7 @@ def _is_sought(problem: Problem, observations: PhotoObservations, i: int) -> boo
     return upright and float(surface.normal[2]) > problem.settings.upward
 
 
-def _observed_place(problem: Problem, i: int) -> RestingSurface:
+def _place(problem: Problem, i: int) -> RestingSurface:
     place = problem.place_of(i, problem)
     assert place is not None, "it rests on something"
     return place
@@ -109,7 +109,7 @@ def _solve_heights(
     lines, wanted = [], []
     for k, i in enumerate(chains.members):
         is_unknown = np.arange(unknowns) == k
-        level = problem.in_world(i, _observed_place(problem, i)).level
+        level = problem.to_world(i, _place(problem, i)).level
         fits = int(problem.parent[i]) < 0 or abs(level - foot[i]) <= problem.settings.load_m
         hidden = [foot_hidden[i], observations.hidden[i, 1]]
         weight = np.where(hidden, problem.settings.hidden, 1.0) / _apparent_height_m(observations, i)

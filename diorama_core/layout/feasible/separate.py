@@ -111,7 +111,7 @@ def build_program(
         problem,
         structure,
         bodies,
-        may_meet(problem, bodies, [s and settled.in_world(i, s) for i, s in enumerate(structure.surface)]),
+        may_meet(problem, bodies, [s and settled.to_world(i, s) for i, s in enumerate(structure.surface)]),
         J,
         np.abs(jacobian).max(axis=1, initial=0.0) > 1e-12,
         rows[alive],

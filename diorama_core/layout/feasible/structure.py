@@ -70,7 +70,7 @@ def exact_structure(
             if surface is None:
                 walk.basis[i] = np.eye(3)[:, :2]
             else:
-                place = now.in_world(i, surface)
+                place = now.to_world(i, surface)
                 settle(problem, walk, i, place, against.get(i, []), ray, observations, eye)
     owners = np.array(walk.owners, dtype=int)
     return Structure(

@@ -170,7 +170,7 @@ class Problem:
             np.array([pose.scale for pose in poses]).reshape(-1, 3),
         )
 
-    def in_world(self, index: int, place: RestingSurface) -> RestingSurface:
+    def to_world(self, index: int, place: RestingSurface) -> RestingSurface:
         """A place on an object's supporter where the supporter is; a plane is in the world as it is."""
         j = int(self.parent[index])
         return place if j < 0 else place.transform(self.R[j], self.p[j], self.scale[j])
@@ -181,7 +181,7 @@ class Problem:
             return self.surface[index]
         size = observed.shape_size[index] * observed.scale[index]
         corners = observed.p[index] + box_corners(size) @ observed.R[index].T
-        return min(self.levels[index], key=lambda s: box_misfit(corners, size, self.in_world(index, s)))
+        return min(self.levels[index], key=lambda s: box_misfit(corners, size, self.to_world(index, s)))
 
     @property
     def free_poses(self) -> dict[str, Pose]:

@@ -103,7 +103,7 @@ class Search:
     def _freedom(self, poses: PoseBatch, i: int) -> Freedom:
         surface = self.problem.surface[i]
         assert surface is not None, "what nothing holds does not move"
-        surface = self.problem.with_poses(poses.R, poses.position, poses.scale).in_world(i, surface)
+        surface = self.problem.with_poses(poses.R, poses.position, poses.scale).to_world(i, surface)
         is_round = self.picture.casters[i].round_from_above
         return freedom(self.problem, i, surface, sized=self.sized[i], is_round=is_round, settings=self.settings)
 

@@ -33,7 +33,7 @@ def of(
     i = problem.ids.index(name)
     surface = problem.surface[i]
     assert surface is not None
-    return freedom(problem, i, problem.in_world(i, surface), sized=sized, is_round=is_round), problem, i
+    return freedom(problem, i, problem.to_world(i, surface), sized=sized, is_round=is_round), problem, i
 
 
 def changed_corners(free: Freedom, problem: Problem, i: int, changes: np.ndarray) -> np.ndarray:
