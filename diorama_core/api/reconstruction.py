@@ -165,7 +165,7 @@ def save(reconstruction: Reconstruction, folder: Path | str) -> None:
     Raises:
         ProjectError: the folder cannot be written, or holds something else.
     """
-    from diorama_core.project.build import save_built
+    from diorama_core.project.build import save_artefacts
     from diorama_core.project.storage import Project
 
     project, source = Project.create(Path(folder)), reconstruction.project
@@ -180,7 +180,7 @@ def save(reconstruction: Reconstruction, folder: Path | str) -> None:
     if inputs is not None:
         project.save_inputs(inputs, reconstruction.warnings)
     if inputs is not None and built is not None:
-        save_built(project, replace(built, scene=reconstruction.scene), inputs, reconstruction.warnings)
+        save_artefacts(project, replace(built, scene=reconstruction.scene), inputs, reconstruction.warnings)
     else:
         project.save_textures(reconstruction.textures)
-        project.save_scene(reconstruction.scene)
+    project.save_scene(reconstruction.scene)

@@ -95,8 +95,4 @@ def _soft(item: SceneObject) -> bool:
 
 def _belongs(scene: Scene, a: str, b: str) -> bool:
     """What lies on or in its supporter touches it by right (a book pressed into a soft seat, a plant in its pot)."""
-    for child, parent in ((a, b), (b, a)):
-        edge = scene.support_of(child)
-        if edge is not None and edge.parent == parent:
-            return True
-    return False
+    return b in scene.children_of(a) or a in scene.children_of(b)

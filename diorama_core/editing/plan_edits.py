@@ -1,10 +1,8 @@
 """Edits as plans make them: rooms are begun and drawn, corners dragged, walls split and given a length that was typed.
 
-Both move whole walls along their normals, so that the room stays closed and what is fastened to them follows
-(`scene.room_edits.move_plane`).
-
-Parts of a split wall lie in one plane and share an edge; when one of them is moved, a wall closes the gap
-(`scene.room_edits.move_plane`).
+Whole walls move along their normals (`scene.room_edits.move_plane`), so that the room stays closed and what is fastened
+to them follows. Parts of a split wall lie in one plane and share an edge; when one of them is moved, a wall closes the
+gap.
 """
 
 from __future__ import annotations

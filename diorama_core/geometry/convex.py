@@ -77,12 +77,9 @@ def prism_part(polygon: Float[np.ndarray, "k 3"], extrusion: Float[np.ndarray, "
 
 def hull_part(points: Float[np.ndarray, "n 3"]) -> ConvexPart:
     """The exact convex hull of points; flat or empty sets become thin boxes."""
-    try:
-        hull = ConvexHull(points)
-    except (QhullError, ValueError):
-        low, high = points.min(axis=0), points.max(axis=0)
-        pad = np.maximum(0.5 * (THINNEST_M - (high - low)), 0.0)
-        return box_part(low - pad, high + pad)
+    hull = _hull(points)
+    if hull is None:
+        return _thick_box(points)
     return ConvexPart(points[hull.vertices], _directions(hull.equations[:, :3]), _hull_edges(hull))
 
 
@@ -125,7 +122,7 @@ def simplest_part(points: Float[np.ndarray, "n 3"]) -> ConvexPart:
     low, high = points.min(axis=0), points.max(axis=0)
     volume = _volume(points)
     if volume < 1e-12 or (high - low).min() < THINNEST_M or volume >= TIGHT * float(np.prod(high - low)):
-        return box_part(*_pad(low, high))
+        return _thick_box(points)
     for axis in (2, 0, 1):
         prism = _prism_about(points, axis, volume)
         if prism is not None and volume >= TIGHT * _volume(np.asarray(prism.vertices)):
@@ -136,9 +133,19 @@ def simplest_part(points: Float[np.ndarray, "n 3"]) -> ConvexPart:
     return hull_part(points) if len(_hull_points(points)) <= MAX_VERTICES else _polytope(points)
 
 
-def _pad(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _hull(points: np.ndarray) -> ConvexHull | None:
+    """The convex hull; None for points that span no volume, or no area."""
+    try:
+        return ConvexHull(points)
+    except (QhullError, ValueError):
+        return None
+
+
+def _thick_box(points: Float[np.ndarray, "n 3"]) -> ConvexPart:
+    """The box around points, nowhere thinner than `THINNEST_M`."""
+    low, high = points.min(axis=0), points.max(axis=0)
     pad = np.maximum(0.5 * (THINNEST_M - (high - low)), 0.0)
-    return low - pad, high + pad
+    return box_part(low - pad, high + pad)
 
 
 def _directions(vectors: np.ndarray) -> Float[np.ndarray, "k 3"]:
@@ -188,10 +195,8 @@ def _edge_numbers(corners: Int[np.ndarray, "f 3"]) -> Int[np.ndarray, " e"]:
 
 def _hull_points(points: np.ndarray) -> np.ndarray:
     flat = points.reshape(-1, 3)
-    try:
-        return flat[ConvexHull(flat).vertices]
-    except (QhullError, ValueError):
-        return flat
+    hull = _hull(flat)
+    return flat if hull is None else flat[hull.vertices]
 
 
 def _volume(points: np.ndarray) -> float:
@@ -199,10 +204,8 @@ def _volume(points: np.ndarray) -> float:
     flat = points.reshape(-1, 3)
     if len(flat) > 2 * len(_ROUGH):
         flat = flat[np.unique((flat @ _ROUGH.T).argmax(axis=0))]
-    try:
-        return float(ConvexHull(flat).volume)
-    except (QhullError, ValueError):
-        return 0.0
+    hull = _hull(flat)
+    return 0.0 if hull is None else float(hull.volume)
 
 
 def _solid_volume(triangles: Float[np.ndarray, "t 3 3"]) -> float:
@@ -323,10 +326,8 @@ def _drop_contained(clouds: list[np.ndarray]) -> list[np.ndarray]:
         if any((cloud @ p[:, :3].T + p[:, 3] <= 1e-5).all() for p in planes):
             continue
         outer.append(cloud)
-        try:
-            planes.append(ConvexHull(cloud).equations)
-        except (QhullError, ValueError):
-            continue
+        if (hull := _hull(cloud)) is not None:
+            planes.append(hull.equations)
     return outer
 
 
@@ -336,11 +337,8 @@ def _prism_about(points: np.ndarray, axis: int, volume: float) -> ConvexPart | N
     None where it cannot be tight about a hull of this volume.
     """
     u, v = [(1, 2), (2, 0), (0, 1)][axis]
-    try:
-        flat = ConvexHull(points[:, [u, v]])
-    except (QhullError, ValueError):
-        return None
-    if volume < TIGHT * float(flat.volume) * float(np.ptp(points[:, axis])):
+    flat = _hull(points[:, [u, v]])
+    if flat is None or volume < TIGHT * float(flat.volume) * float(np.ptp(points[:, axis])):
         return None  # an outline of fewer sides only encloses more
     outline = outer_polygon(points[:, [u, v]][flat.vertices], 8)
     ring = np.zeros((len(outline), 3))
@@ -405,8 +403,9 @@ def _oriented_box(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _turn_box(to_box: np.ndarray, extents: np.ndarray) -> ConvexPart:
     local = box_part(-extents / 2, extents / 2)
-    R, t = np.linalg.inv(to_box)[:3, :3], np.linalg.inv(to_box)[:3, 3]
-    return ConvexPart(local.vertices @ R.T + t, R.T, R.T)
+    T = np.linalg.inv(to_box)
+    R = T[:3, :3]
+    return ConvexPart(local.vertices @ R.T + T[:3, 3], R.T, R.T)
 
 
 def _polytope(points: np.ndarray) -> ConvexPart:

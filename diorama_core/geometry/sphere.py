@@ -10,13 +10,13 @@ import cv2
 import numpy as np
 from jaxtyping import Float, UInt8
 
+from diorama_core.geometry.casting import pixel_centres
 from diorama_core.scene.types import Camera, Intrinsics
 
 
 def directions(width: int) -> Float[np.ndarray, "h w 3"]:
     """Directions of all pixels of a map, unit vectors in the sphere's frame; the map is half as high as wide."""
-    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(width // 2) + 0.5)
-    return directions_at(np.stack([x, y], axis=-1), (width, width // 2))
+    return directions_at(pixel_centres(width, width // 2), (width, width // 2))
 
 
 def directions_at(pixels: Float[np.ndarray, "*n 2"], size: tuple[int, int]) -> Float[np.ndarray, "*n 3"]:
@@ -56,12 +56,11 @@ def perspective(
     """
     k, T = intrinsics, np.eye(4)
     T[:3, :3] = R_sphere_camera
-    x, y = np.meshgrid(np.arange(k.width) + 0.5, np.arange(k.height) + 0.5)
     # Averaged from a finer grid: a wide map is shown smaller.
     finer = max(1, round(picture.shape[1] / (2 * np.pi * k.fx)))
     if finer > 1:
         picture = cv2.resize(picture, None, fx=1 / finer, fy=1 / finer, interpolation=cv2.INTER_AREA)
-    return sample(picture, Camera(k, T).rays(np.stack([x, y], axis=-1)))
+    return sample(picture, Camera(k, T).rays(pixel_centres(k.width, k.height)))
 
 
 def level_axes(azimuth_rad: float, elevation_rad: float = 0.0) -> Float[np.ndarray, "3 3"]:

@@ -39,15 +39,24 @@ def derive(path: Path, make: Callable[[], bytes], value_of: Callable[[bytes], T]
         make: Makes its content.
         value_of: Reads the content; raises anything when it is damaged.
     """
-    data = read_derived(path)
-    if data is not None:
-        try:
-            return value_of(data)
-        except Exception as error:  # damaged bytes raise almost anything, and all of it means the same
-            log.warning("%s is damaged (%s); it is made again", path, shorten(str(error)) or type(error).__name__)
+    known = _value_in(path, value_of)
+    if known is not None:
+        return known
     data = make()
     write_derived(path, data)
     return value_of(data)
+
+
+def _value_in(path: Path, value_of: Callable[[bytes], T]) -> T | None:
+    """The value in a file; None when it is absent or damaged."""
+    data = read_derived(path)
+    if data is None:
+        return None
+    try:
+        return value_of(data)
+    except Exception as error:  # damaged bytes raise almost anything, and all of it means the same
+        log.warning("%s is damaged (%s); it is made again", path, shorten(str(error)) or type(error).__name__)
+        return None
 
 
 def write_derived(path: Path, data: bytes, *, limit_bytes: int | None = None) -> None:
@@ -75,15 +84,8 @@ def read_arrays(path: Path, *names: str, mark_use: bool = False) -> tuple[np.nda
         names: Of the arrays.
         mark_use: Set the file's time, so that it is not the first to go when its folder is full.
     """
-    content = read_derived(path)
-    if content is None:
-        return None
-    try:
-        arrays = arrays_of(content, names)
-    except Exception as error:  # damaged bytes make zip and array headers raise almost anything
-        log.warning("%s is damaged (%s); it is made again", path, shorten(str(error)) or type(error).__name__)
-        return None
-    if mark_use:
+    arrays = _value_in(path, lambda content: arrays_of(content, names))
+    if arrays is not None and mark_use:
         with suppress(OSError):  # another's folder may be read but not touched
             os.utime(path)
     return arrays

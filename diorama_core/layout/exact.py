@@ -124,7 +124,10 @@ def _model_xml(scene: Scene, problem: Problem, step_s: float) -> str:
         joint = "" if hung or not problem.free[k] else "<freejoint/>"
         at, turn = _numbers(pose.position), _numbers(quaternion_wxyz(pose.R_world_object))
         bodies.append(f'<body name="{name}" pos="{at}" quat="{turn}">{joint}{"".join(geoms)}</body>')
-    room = [_plane_xml(p.normal, p.centre) for p in scene.architecture.planes if p.role == "floor"]
+    room = [
+        f'<geom type="plane" size="50 50 1" pos="{_numbers(p.centre)}" zaxis="{_numbers(p.normal)}"/>'
+        for p in scene.architecture.by_role("floor")
+    ]
     return (
         f'<mujoco><option timestep="{step_s}" integrator="implicitfast" cone="elliptic"/>'
         '<default><geom friction="1 0.02 0.001" solref="0.01 1" margin="0.0005"/></default>'
@@ -140,10 +143,6 @@ def _rugs_give_way(problem: Problem) -> str:
         for i, j in itertools.combinations(range(problem.count), 2)
         if problem.yielding[i, j] and i not in problem.chain(j) and j not in problem.chain(i)
     )
-
-
-def _plane_xml(normal: np.ndarray, point: np.ndarray) -> str:
-    return f'<geom type="plane" size="50 50 1" pos="{_numbers(point)}" zaxis="{_numbers(normal)}"/>'
 
 
 def _numbers(values: np.ndarray) -> str:

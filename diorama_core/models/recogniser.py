@@ -88,29 +88,17 @@ class Recogniser:
             raise UnavailableError(f"{paths[2]}: cannot be read; restore it from the repository") from error
         return cls(paths[0], paths[1], categories, form_values, "".join(sha256_of(p)[:8] for p in paths[:2]))
 
-    def propose(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int = 100) -> Detections:
-        """Boxes that may hold an object, best first, labels into `categories`; two alike never overlap much.
+    def propose(
+        self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int = 100, iou: float = DOUBLE_IOU
+    ) -> Detections:
+        """Boxes that may hold an object, best first, labels into `categories`; no two overlap by more than `iou`.
 
         Args:
             rgb: the picture, 0 to 255.
             threshold: least score, 0 to 1.
             most: boxes at most.
+            iou: `DOUBLE_IOU` leaves one box of an object, `ALIKE_IOU` several to choose from where somebody points.
         """
-        return self._best(rgb, threshold, most, DOUBLE_IOU)
-
-    def alternatives(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int) -> Detections:
-        """Boxes to choose from where somebody points: several of one object, each as one look at the picture saw it.
-
-        Arguments are those of `propose`.
-
-        Args:
-            rgb: the picture, 0 to 255.
-            threshold: least score, 0 to 1.
-            most: boxes at most.
-        """
-        return self._best(rgb, threshold, most, ALIKE_IOU)
-
-    def _best(self, rgb: UInt8[np.ndarray, "h w 3"], threshold: float, most: int, iou: float) -> Detections:
         every = join([look for area in self.areas_px for look in self._propose(rgb, area)])
         detections = without_doubles(every.rows(every.scores >= threshold), iou, across_classes=True)
         return detections.rows(np.arange(min(most, len(detections))))

@@ -105,20 +105,17 @@ class ModelStore:
 
     def has(self, network: Network) -> bool:
         """Whether every file is there, whole and checked, and may be used."""
-        if network.id in self.without:
-            return False
-        record = self.record(network)
-        return all(self._whole(network, f, record) for f in network.files)
-
-    def _whole(self, network: Network, file: ModelFile, record: Installed) -> bool:
-        known = record.files.get(file.path)
-        path = self.folder_of(network) / file.path
-        return known is not None and path.is_file() and path.stat().st_size == known.bytes
+        return network.id not in self.without and not self.missing(network)
 
     def missing(self, network: Network) -> tuple[ModelFile, ...]:
         """Files that still have to be fetched."""
-        record = self.record(network)
-        return tuple(f for f in network.files if not self._whole(network, f, record))
+        record, folder = self.record(network), self.folder_of(network)
+
+        def is_whole(file: ModelFile) -> bool:
+            known, path = record.files.get(file.path), folder / file.path
+            return known is not None and path.is_file() and path.stat().st_size == known.bytes
+
+        return tuple(f for f in network.files if not is_whole(f))
 
     def path(self, network: Network, file: str) -> Path:
         """The path of one file, ready to load.

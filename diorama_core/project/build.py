@@ -91,8 +91,8 @@ def build_with_usable_networks(
     return replace(built, notes=(*built.notes, *left_out))
 
 
-def save_built(project: Project, built: Built, given: Inputs, warnings: Sequence[str] = ()) -> None:
-    """Save a built scene, its textures and what was used in a project whose inputs are saved already.
+def save_artefacts(project: Project, built: Built, given: Inputs, warnings: Sequence[str] = ()) -> None:
+    """Save all of a build but its scene, in a project whose inputs are saved already.
 
     Args:
         project: whose folder is written.
@@ -102,19 +102,6 @@ def save_built(project: Project, built: Built, given: Inputs, warnings: Sequence
 
     Raises:
         ProjectError: the folder cannot be written.
-    """
-    save_artefacts(project, built, given, warnings)
-    project.save_scene(built.scene)
-
-
-def save_artefacts(project: Project, built: Built, given: Inputs, warnings: Sequence[str] = ()) -> None:
-    """Save all of a build but its scene, as `save_built` does.
-
-    Args:
-        project: whose folder is written.
-        built: the build.
-        given: the inputs before anything was chosen.
-        warnings: to be kept with the project.
     """
     corrected = with_found_boxes(given, built)
     if corrected is not given:

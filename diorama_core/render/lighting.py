@@ -76,12 +76,10 @@ def studio(bounds: Float[np.ndarray, "2 3"], toward_camera: Float[np.ndarray, "3
         bounds: Corners of what is lit, metres.
         toward_camera: Horizontal direction from the room to the viewer.
     """
-    centre, size = bounds.mean(axis=0), bounds[1] - bounds[0]
-    radius = max(0.5 * float(np.linalg.norm(size)), 0.1)
+    centre, radius, distance = _ball(bounds)
     back = unit(np.array([toward_camera[0], toward_camera[1], 0.0]) + 1e-9)
     left = np.cross(back, [0.0, 0.0, 1.0])
     direction = unit(0.8 * back + 0.34 * left + 0.8 * np.array([0.0, 0.0, 1.0]))
-    distance = 1.7 * radius
     across = unit(np.cross(direction, [0.0, 0.0, 1.0]))
     upward = np.cross(across, direction)
     return Lighting(
@@ -112,11 +110,9 @@ def room_lighting(bounds: Float[np.ndarray, "2 3"], light: RoomLight) -> Lightin
         bounds: Corners of what is lit, metres.
         light: As the photo tells it.
     """
-    centre, size = bounds.mean(axis=0), bounds[1] - bounds[0]
-    radius = max(0.5 * float(np.linalg.norm(size)), 0.1)
+    centre, radius, distance = _ball(bounds)
     x, y, z = light.direction
     direction = unit(np.array([x, y, max(z, MIN_ELEVATION)]))
-    distance = 1.7 * radius
     across = unit(np.cross(direction, [0.0, 0.0, 1.0]) + np.array([1e-6, 0.0, 0.0]))
     # A distant light of irradiance I has the mean I / 4 over all directions and the slope I / 2 (spherical harmonics).
     directed = 2.0 * light.strength * MEAN_IRRADIANCE
@@ -130,6 +126,12 @@ def room_lighting(bounds: Float[np.ndarray, "2 3"], light: RoomLight) -> Lightin
         ground=0.95 * even,
         reach_m=max(0.9 * radius, 0.05),
     )
+
+
+def _ball(bounds: Float[np.ndarray, "2 3"]) -> tuple[Float[np.ndarray, "3"], float, float]:
+    """Centre and radius of a ball around what is lit, and the distance of its window, metres."""
+    radius = max(0.5 * float(np.linalg.norm(bounds[1] - bounds[0])), 0.1)
+    return bounds.mean(axis=0), radius, 1.7 * radius
 
 
 def irradiance(

@@ -18,7 +18,7 @@ from diorama_core.library.record import ShapeLibrary
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.lighting import Effort, ambient
 from diorama_core.render.picture import light_of, looking_along
-from diorama_core.render.raycast import PinholeView
+from diorama_core.render.raycast import PinholeView, pixel_centres
 from diorama_core.render.shading import shoot
 from diorama_core.render.world import scene_world
 from diorama_core.scene.types import Camera, Intrinsics, Scene, rigid
@@ -66,7 +66,7 @@ def panorama(
         light, blockers = light_of(scene, opened, library, world, view)
         progress.report(number / len(SIDES), "looking around the room")
         shot = shoot(world, blockers, view, light, effort, Progress(token=progress.token))
-        beyond = ambient(view.all_rays()[..., 3:].reshape(-1, 3), light).reshape(side, side, 3)
+        beyond = ambient(view.rays(pixel_centres(side, side))[..., 3:].reshape(-1, 3), light).reshape(side, side, 3)
         radiance = shot.radiance + beyond * (1.0 - shot.coverage[..., None])
         p = away @ view.camera.T_world_camera[:3, :3]
         is_of_face = face_of == number

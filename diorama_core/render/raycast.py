@@ -70,10 +70,6 @@ class PinholeView:
         """Pixels down."""
         return self.camera.intrinsics.height
 
-    def all_rays(self) -> RayArray:
-        """Those through the centres of all pixels."""
-        return self.rays(pixel_centres(self.width, self.height))
-
     def rays(self, pixels: Float[np.ndarray, "*n 2"]) -> RayArray:
         """Rays through image positions, one unit of distance being one metre of depth."""
         directions = self.camera.rays(pixels)

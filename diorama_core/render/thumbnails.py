@@ -6,7 +6,7 @@ import io
 from collections.abc import Sequence
 from pathlib import Path
 
-from PIL import Image
+from PIL import Image, ImageDraw
 
 from diorama_core.io.cache import LruCache
 from diorama_core.io.derived import derive
@@ -14,8 +14,10 @@ from diorama_core.library.catalogue import default_cache_dir
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
 from diorama_core.progress import SILENT, Progress
 from diorama_core.render.appearance import Paint
-from diorama_core.render.views import contact_sheet, render_shape
+from diorama_core.render.views import PAGE, render_shape
 
+CAPTION_PX = 18
+INK = (60, 60, 60)
 _CACHE: LruCache[str, bytes] = LruCache(2048)
 _VERSION = 1
 """Raise it when the picture of the same shape changes: the light, the view, the background."""
@@ -53,7 +55,7 @@ def _whole_png(data: bytes) -> bytes:
 def shape_sheet(
     library: ShapeLibrary, shapes: Sequence[Shape], size: int = 240, columns: int = 6, progress: Progress = SILENT
 ) -> Image.Image:
-    """A contact sheet of shapes, their pictures taken from the kept ones or rendered now.
+    """A page with every shape's picture, taken from the kept ones or rendered now, over its id and size.
 
     Args:
         library: Where the shapes are.
@@ -62,15 +64,25 @@ def shape_sheet(
         columns: Pictures side by side.
         progress: Reports and cancellation.
     """
-    done = 0
+    rows = max(-(-len(shapes) // columns), 1)
+    page = Image.new("RGB", (columns * size, rows * (size + CAPTION_PX)), PAGE)
+    draw = ImageDraw.Draw(page)
+    for number, shape in enumerate(shapes):
+        progress.report(number / len(shapes), f"pictures: {number} of {len(shapes)}")
+        left, top = (number % columns) * size, (number // columns) * (size + CAPTION_PX)
+        picture = Image.open(io.BytesIO(thumbnail(library, shape.id, size)), formats=("PNG",)).convert("RGBA")
+        page.paste(picture, (left, top), picture)
+        x, y, z = shape.size_m
+        words = f"{shape.id}  {x:.2f} x {y:.2f} x {z:.2f}"
+        draw.text((left + 4, top + size + 2), _fit(draw, words, size - 8), fill=INK)
+    return page
 
-    def picture(shape: Shape) -> Image.Image:
-        nonlocal done
-        progress.report(done / len(shapes), f"pictures: {done} of {len(shapes)}")
-        done += 1
-        return Image.open(io.BytesIO(thumbnail(library, shape.id, size)), formats=("PNG",))
 
-    return contact_sheet(shapes, picture, size, columns)
+def _fit(draw: ImageDraw.ImageDraw, words: str, width_px: int) -> str:
+    """The words, or as many of their letters as fit."""
+    while words and draw.textlength(words) > width_px:
+        words = words[:-1]
+    return words.rstrip()
 
 
 def _render(library: ShapeLibrary, shape_id: str, size: int, paint: Paint = (None, None)) -> bytes:

@@ -1,14 +1,13 @@
-"""Views of single shapes, studio pictures with a contact shadow on nothing, and contact sheets of many of them."""
+"""Views of single shapes: studio pictures with a contact shadow on nothing."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
-from PIL import Image, ImageDraw
+from PIL import Image
 
 from diorama_core.library.opening import OpenedShapes, can_open
 from diorama_core.library.record import Shape, ShapeLibrary, record_of
@@ -32,6 +31,7 @@ class StudioView:
     elevation_rad: float
 
 
+PAGE = (246, 245, 243)
 EXPOSURE = 0.86
 """Keeps white shapes apart from a white page."""
 STUDIO_EFFORT = Effort(window_rays=2, sky_rays=3)
@@ -148,39 +148,3 @@ def _composite(shot: Shot, shadow: Float32[np.ndarray, "h w"]) -> UInt8[np.ndarr
     opacity = covered + shadow[..., None] * (1 - covered)
     straight = colour * covered / np.maximum(opacity, 1e-3)
     return np.concatenate([as_bytes(straight), as_bytes(opacity)], axis=-1)
-
-
-CAPTION_PX = 18
-PAGE = (246, 245, 243)
-INK = (60, 60, 60)
-
-
-def contact_sheet(
-    shapes: Sequence[Shape], picture: Callable[[Shape], Image.Image], size_px: int = 240, columns: int = 6
-) -> Image.Image:
-    """A page with every shape's picture over its id and size.
-
-    Args:
-        shapes: What to show, in order.
-        picture: Renders one shape; the library itself renders nothing.
-        size_px: Side of one picture.
-        columns: Pictures side by side.
-    """
-    rows = max(-(-len(shapes) // columns), 1)
-    page = Image.new("RGB", (columns * size_px, rows * (size_px + CAPTION_PX)), PAGE)
-    draw = ImageDraw.Draw(page)
-    for number, shape in enumerate(shapes):
-        left, top = (number % columns) * size_px, (number // columns) * (size_px + CAPTION_PX)
-        image = picture(shape).convert("RGBA").resize((size_px, size_px))
-        page.paste(image, (left, top), image)
-        x, y, z = shape.size_m
-        words = f"{shape.id}  {x:.2f} x {y:.2f} x {z:.2f}"
-        draw.text((left + 4, top + size_px + 2), _fit(draw, words, size_px - 8), fill=INK)
-    return page
-
-
-def _fit(draw: ImageDraw.ImageDraw, words: str, width_px: int) -> str:
-    """The words, or as many of their letters as fit."""
-    while words and draw.textlength(words) > width_px:
-        words = words[:-1]
-    return words.rstrip()

@@ -56,16 +56,8 @@ def move(scene: Scene, object_id: str, pose: Pose) -> Scene:
     _check_size(item, pose)
     T_new_old = pose.T_world_object @ np.linalg.inv(item.pose.T_world_object)
     followers = set(descendants(scene, object_id))
-    return _map_objects(
-        scene,
-        lambda o: (
-            replace(o, pose=pose)
-            if o.id == object_id
-            else replace(o, pose=_carry(o.pose, T_new_old))
-            if o.id in followers
-            else o
-        ),
-    )
+    poses = {o.id: _carry(o.pose, T_new_old) for o in scene.objects if o.id in followers} | {object_id: pose}
+    return _map_objects(scene, lambda o: replace(o, pose=poses[o.id]) if o.id in poses else o)
 
 
 def place(scene: Scene, poses: Mapping[str, Pose]) -> Scene:
@@ -99,9 +91,7 @@ def swap(scene: Scene, object_id: str, candidate: Candidate, *, keep_pose: bool 
     """
     item = _editable(scene, object_id)
     pose = _seat(item, candidate) if keep_pose else candidate.pose
-    swapped = replace(
-        item, shape_id=candidate.shape_id, shape_size_m=candidate.shape_size_m, pose=pose, colour=item.colour
-    )
+    swapped = replace(item, shape_id=candidate.shape_id, shape_size_m=candidate.shape_size_m, pose=pose)
     _check_size(swapped, pose)
     rise = _top(swapped) - _top(item)
     followers = set(descendants(scene, object_id)) if abs(rise) > 1e-12 else set()

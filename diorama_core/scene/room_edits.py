@@ -66,11 +66,10 @@ def set_ceiling_height(scene: Scene, height_m: float) -> Scene:
         raise EditRefused(
             f"a ceiling at {height_m:g} m is no room; give {LOWEST_CEILING_M:g} to {HIGHEST_CEILING_M:g} m"
         )
-    upper = scene.architecture.by_role("ceiling") or scene.architecture.by_role("wall")
-    if not upper:
+    height_now_m = ceiling_height(scene)
+    if height_now_m is None:
         raise EditRefused("the room has neither a ceiling nor walls; there is nothing to raise or lower")
-    ceilings = scene.architecture.by_role("ceiling")
-    rise = height_m - (max(float(p.polygon[:, 2].max()) for p in upper) - floor_height(scene))
+    ceilings, rise = scene.architecture.by_role("ceiling"), height_m - height_now_m
 
     def lift(plane: Plane) -> Plane:
         if plane.role == "floor":

@@ -13,7 +13,7 @@ from dataclasses import asdict
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from diorama_core.errors import SceneError
 from diorama_core.io.bounded import parse_json, shorten
@@ -71,6 +71,8 @@ Pixels = Annotated[int, Field(gt=0, le=100_000)]
 Focal = Annotated[float, Field(ge=1e-3, le=1e7, allow_inf_nan=False)]
 Id = Annotated[str, Field(min_length=1, max_length=200)]
 Words = Annotated[str, Field(max_length=500)]
+AS_TUPLE = AfterValidator(tuple)
+"""Lists of a file are tuples in the scene."""
 
 Vec3 = tuple[Metres, Metres, Metres]
 Size3 = tuple[Size, Size, Size]
@@ -131,7 +133,7 @@ class _SupportFile(_Model):
     relation: Relation
     parent_surface: Annotated[int, Field(ge=0, le=1_000_000)] | None
     child_face: FaceName | None
-    adheres_to: Annotated[list[Id], Field(max_length=MAX_ITEMS)]
+    adheres_to: Annotated[list[Id], Field(max_length=MAX_ITEMS), AS_TUPLE]
 
 
 class _PhotoMaterialFile(_Model):
@@ -147,9 +149,9 @@ class _PhotoMaterialFile(_Model):
 
 class _BeliefFile(_Model):
     present: Unit
-    kinds: Annotated[list[tuple[Words, Unit]], Field(max_length=MAX_ITEMS)]
-    fronts: Annotated[list[Unit], Field(max_length=4)]
-    supporters: Annotated[list[tuple[Id, Unit]], Field(max_length=MAX_ITEMS)]
+    kinds: Annotated[list[tuple[Words, Unit]], Field(max_length=MAX_ITEMS), AS_TUPLE]
+    fronts: Annotated[list[Unit], Field(max_length=4), AS_TUPLE]
+    supporters: Annotated[list[tuple[Id, Unit]], Field(max_length=MAX_ITEMS), AS_TUPLE]
     place_sigma_m: Sigma
     size_sigma: Sigma
 
@@ -189,7 +191,7 @@ class _LightSettingsFile(_Model):
     hour: Annotated[float, Field(ge=0.0, le=24.0)] | None = None
     north_rad: Number
     exposure_ev: Annotated[float, Field(ge=-MAX_EXPOSURE_EV, le=MAX_EXPOSURE_EV)] = 0.0
-    lamps_on: Annotated[list[Words], Field(max_length=MAX_ITEMS)] | None = None
+    lamps_on: Annotated[list[Words], Field(max_length=MAX_ITEMS), AS_TUPLE] | None = None
 
 
 class _HomeRoomFile(_Model):
@@ -325,9 +327,7 @@ def _numbers(vector: Any) -> list[float]:
 def _camera_to_file(camera: Camera | None) -> dict[str, Any] | None:
     if camera is None:
         return None
-    k = camera.intrinsics
-    inner = {"width": k.width, "height": k.height, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy}
-    return {**inner, "T_world_camera": _rows(camera.T_world_camera)}
+    return {**asdict(camera.intrinsics), "T_world_camera": _rows(camera.T_world_camera)}
 
 
 def _plane_to_file(plane: Plane) -> dict[str, Any]:
@@ -359,7 +359,7 @@ def _object_to_file(item: SceneObject, support: Support | None) -> dict[str, Any
         "shape_size_m": _numbers(item.shape_size_m),
         **_pose_to_file(item.pose),
         "size_m": _numbers(item.size_m),
-        "support": None if support is None else _support_to_file(support),
+        "support": None if support is None else {k: v for k, v in asdict(support).items() if k != "child"},
         "candidates": [_candidate_to_file(c) for c in item.candidates],
         "mask_id": item.mask_id,
         "box_px": None if item.box_px is None else _numbers(item.box_px),
@@ -373,16 +373,6 @@ def _object_to_file(item: SceneObject, support: Support | None) -> dict[str, Any
         "open_share": item.open_share,
         "by_hand": item.by_hand,
         "belief": None if item.belief is None else asdict(item.belief),
-    }
-
-
-def _support_to_file(edge: Support) -> dict[str, Any]:
-    return {
-        "parent": edge.parent,
-        "relation": edge.relation,
-        "parent_surface": edge.parent_surface,
-        "child_face": edge.child_face,
-        "adheres_to": list(edge.adheres_to),
     }
 
 
@@ -403,18 +393,13 @@ def _scene_from_file(file: _SceneFile) -> Scene:
         camera=_camera_from_file(file.camera),
         architecture=Architecture(tuple(_plane_from_file(p) for p in file.architecture.planes)),
         objects=tuple(_object_from_file(o) for o in file.objects),
-        supports=tuple(_support_from_file(o.id, o.support) for o in file.objects if o.support is not None),
+        supports=tuple(Support(o.id, **dict(o.support)) for o in file.objects if o.support is not None),
         metrics=tuple(file.metrics.items()),
-        light=None if file.light is None else RoomLight(**file.light.model_dump()),
+        light=None if file.light is None else RoomLight(**dict(file.light)),
         scale_sigma=file.scale_sigma,
-        light_settings=PHOTO_LIGHT if file.light_settings is None else _light_settings(file.light_settings),
-        rooms=tuple(HomeRoom(**r.model_dump()) for r in file.rooms),
+        light_settings=PHOTO_LIGHT if file.light_settings is None else LightSettings(**dict(file.light_settings)),
+        rooms=tuple(HomeRoom(**dict(r)) for r in file.rooms),
     )
-
-
-def _light_settings(file: _LightSettingsFile) -> LightSettings:
-    lamps = None if file.lamps_on is None else tuple(file.lamps_on)
-    return LightSettings(file.hour, file.north_rad, file.exposure_ev, lamps)
 
 
 def _camera_from_file(file: _CameraFile | None) -> Camera | None:
@@ -436,7 +421,7 @@ def _plane_from_file(file: _PlaneFile) -> Plane:
         colour=file.colour,
         texture=file.texture,
         confidence=file.confidence,
-        finish=None if file.finish is None else SurfaceFinish(**file.finish.model_dump()),
+        finish=None if file.finish is None else SurfaceFinish(**dict(file.finish)),
         photo_colour=file.photo_colour,
         photo_texture=file.photo_texture,
         sigma_m=file.sigma_m,
@@ -448,10 +433,6 @@ def _pose_from_file(T_world_object: Matrix4, scale: Vec3) -> Pose:
     return Pose(T[:3, :3], T[:3, 3], np.array(scale))
 
 
-def _candidate_from_file(file: _CandidateFile) -> Candidate:
-    return Candidate(file.shape, file.shape_size_m, file.score, _pose_from_file(file.T_world_object, file.scale))
-
-
 def _object_from_file(file: _ObjectFile) -> SceneObject:
     return SceneObject(
         id=file.id,
@@ -460,7 +441,10 @@ def _object_from_file(file: _ObjectFile) -> SceneObject:
         shape_id=file.shape,
         shape_size_m=file.shape_size_m,
         pose=_pose_from_file(file.T_world_object, file.scale),
-        candidates=tuple(_candidate_from_file(c) for c in file.candidates),
+        candidates=tuple(
+            Candidate(c.shape, c.shape_size_m, c.score, _pose_from_file(c.T_world_object, c.scale))
+            for c in file.candidates
+        ),
         mask_id=file.mask_id,
         box_px=file.box_px,
         confidence=file.confidence,
@@ -468,31 +452,9 @@ def _object_from_file(file: _ObjectFile) -> SceneObject:
         hidden=file.hidden,
         colour=file.colour,
         finish=file.finish,
-        photo_materials=tuple(PhotoMaterial(**m.model_dump()) for m in file.photo_materials),
+        photo_materials=tuple(PhotoMaterial(**dict(m)) for m in file.photo_materials),
         material_source=file.material_source,
         open_share=file.open_share,
         by_hand=file.by_hand,
-        belief=None if file.belief is None else _belief_from_file(file.belief),
-    )
-
-
-def _belief_from_file(file: _BeliefFile) -> Belief:
-    return Belief(
-        file.present,
-        tuple(file.kinds),
-        tuple(file.fronts),
-        tuple(file.supporters),
-        file.place_sigma_m,
-        file.size_sigma,
-    )
-
-
-def _support_from_file(child: str, file: _SupportFile) -> Support:
-    return Support(
-        child=child,
-        parent=file.parent,
-        relation=file.relation,
-        parent_surface=file.parent_surface,
-        child_face=file.child_face,
-        adheres_to=tuple(file.adheres_to),
+        belief=None if file.belief is None else Belief(**dict(file.belief)),
     )

@@ -94,7 +94,7 @@ def test_large_values_go_there_and_back_whatever_is_printed(process: LimitedProc
 
 def test_what_is_too_large_to_be_handed_over_is_one_line(process: LimitedProcess) -> None:
     with pytest.raises(InputError, match=r"room\.png: it needs more memory"):
-        process.call("room.png", echo, np.zeros(900_000_000, np.uint8))
+        process.call("room.png", echo, np.zeros(500_000_000, np.uint8))
     assert process.call("x", double, 1) == 2
 
 
@@ -128,7 +128,7 @@ def test_waiting_for_a_processor_does_not_count(monkeypatch: pytest.MonkeyPatch)
 def test_closing_ends_the_process_and_leaves_no_files_open(process: LimitedProcess) -> None:
     first = process.call("x", pid)
     before = len(os.listdir("/proc/self/fd"))
-    for _ in range(3):
+    for _ in range(2):
         process.close()
         assert not runs(first)
         first = process.call("x", pid)

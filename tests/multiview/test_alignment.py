@@ -22,9 +22,7 @@ def _readings(G: np.ndarray, scale: float, t: np.ndarray) -> list[PhotoReading]:
     return found
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_gravity_axes_scale_and_floor_are_found_in_any_world(seed: int) -> None:
-    rng = np.random.default_rng(seed)
+def test_gravity_axes_scale_and_floor_are_found_in_any_world(rng: np.random.Generator) -> None:
     G, scale, t = Rotation.random(rng=rng).as_matrix(), float(np.exp(rng.uniform(-2, 2))), rng.normal(size=3)
     readings = _readings(G, scale, t)
     found = align(readings)

@@ -38,7 +38,7 @@ def read_alone(camera: Camera, focal: float = 1.0) -> CameraEstimate:
     return CameraEstimate((CameraHypothesis(k, R, 1.0),), 1.0, CameraSource.exact())
 
 
-@pytest.mark.parametrize(("number", "focal"), [(0, 1.0), (1, 1.04), (2, 1.0)])
+@pytest.mark.parametrize(("number", "focal"), [(0, 1.0), (1, 1.04)])
 def test_the_camera_is_where_boxes_look_as_in_the_photo(number: int, focal: float) -> None:
     camera = CAMERAS[number]
     seen, whose = photo(camera, FURTHER)

@@ -103,6 +103,7 @@ def test_correcting_nothing_gives_the_same_scene_byte_for_byte(room: Room) -> No
     assert all(run.cached for run in again.runs if run.stage not in ("layout", "refinement"))
 
     assert len(built.scene.objects) == 3
+    saved = {path.name for path in project.stages_folder.glob("*.zip")}
     for item in built.objects:
         box = LabelledBox(item.box, item.category, item.label)
         cache = project.stages_folder
@@ -110,8 +111,10 @@ def test_correcting_nothing_gives_the_same_scene_byte_for_byte(room: Room) -> No
         assert scene_to_json(replace_object(built.scene, item.id, found, LIBRARY)).encode() == scene_file
         here, there = found.item.candidates[0].pose, built.observed.object(item.id).candidates[0].pose
         assert np.allclose(here.position, there.position, atol=1e-9)
+    assert {path.name for path in project.stages_folder.glob("*.zip")} == saved, "no stage is run again"
 
 
+@pytest.mark.parametrize("room", [False], ids=["photo"], indirect=True)
 def test_a_corrected_object_is_measured_in_the_room_that_the_build_had(room: Room, tmp_path: Path) -> None:
     inputs, built, cache = room.inputs, room.built, tmp_path / "stages"
     stages = stages_for("auto", inputs, LIBRARY)

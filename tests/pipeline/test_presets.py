@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -28,6 +30,7 @@ from diorama_core.pose import MadeToMeasure
 from diorama_core.progress import Progress
 from diorama_core.provenance import DepthSource, FocalSource, GraphMethod
 from diorama_core.synthesis.layout_rooms import box_library
+from tests.made_once import made_once
 from tests.models import tiny_networks, tiny_sams
 from tests.models.test_depth import HEIGHT, WIDTH, _Moge
 from tests.models.tiny_networks import install
@@ -66,9 +69,7 @@ class _Nothing:
         return ()
 
 
-@pytest.fixture(scope="module")
-def graphs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Path]]:
-    folder = tmp_path_factory.mktemp("graphs")
+def _exported(folder: Path) -> dict[str, list[Path]]:
     _, encoder, decoder = tiny_sams.slimsam(folder)
     moge = (torch.zeros(1, 3, HEIGHT, WIDTH), torch.tensor(1800))
     names = ["points", "normal", "mask", "metric_scale"]
@@ -79,6 +80,28 @@ def graphs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Path]]:
         "migan": [tiny_networks.migan(folder / "p.onnx")],
         "moge-2-vits": [tiny_networks.export(_Moge(), moge, folder / "m.onnx", ["image", "num_tokens"], names)],
     }
+
+
+@cache
+def _graphs_made_once() -> dict[str, list[bytes]]:
+    """To export them takes longer than what is done with them."""
+
+    def make() -> dict[str, list[bytes]]:
+        with TemporaryDirectory() as folder:
+            return {name: [p.read_bytes() for p in paths] for name, paths in _exported(Path(folder)).items()}
+
+    return made_once("tiny networks", make)
+
+
+@pytest.fixture(scope="module")
+def graphs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Path]]:
+    """Graphs of tiny networks, by id."""
+    folder, paths = tmp_path_factory.mktemp("graphs"), dict[str, list[Path]]()
+    for name, files in _graphs_made_once().items():
+        paths[name] = [folder / f"{name}-{k}.onnx" for k in range(len(files))]
+        for path, data in zip(paths[name], files, strict=True):
+            path.write_bytes(data)
+    return paths
 
 
 @pytest.fixture

@@ -22,6 +22,11 @@ from tests.pipeline.test_codec import example_inputs
 from tests.scene.test_edits import _stack
 
 
+@pytest.fixture
+def project(tmp_path: Path) -> Project:
+    return Project.create(tmp_path / "room")
+
+
 def test_a_project_keeps_inputs_scene_and_textures(tmp_path: Path) -> None:
     project = Project.create(tmp_path / "room", name="My room")
     inputs = example_inputs()
@@ -43,19 +48,10 @@ def test_creating_twice_keeps_what_is_there(tmp_path: Path) -> None:
     assert Project.create(tmp_path / "room", name="second").name == "first"
 
 
-def test_an_emptied_scene_can_be_taken_back(tmp_path: Path) -> None:
-    project = Project.create(tmp_path / "room")
+def test_an_emptied_scene_can_be_taken_back(project: Project) -> None:
     project.save_scene(_stack())
     project.save_scene(Scene())
     assert json.loads(project.backups()[0].read_text())["objects"]
-
-
-def test_backups_rotate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(backups, "BACKUP_EVERY_S", 0.0)
-    project = Project.create(tmp_path / "room")
-    for number in range(backups.MAX_BACKUPS + 5):
-        project.save_scene(replace(_stack(), metrics={"number": float(number)}))
-    assert len(project.backups()) == backups.MAX_BACKUPS
 
 
 def test_a_folder_with_other_objects_is_left_alone(tmp_path: Path) -> None:
@@ -81,8 +77,7 @@ def test_a_place_that_cannot_be_a_folder_is_one_clear_line(tmp_path: Path) -> No
         Project.create(tmp_path / "file" / "room")
 
 
-def test_damaged_files_are_named(tmp_path: Path) -> None:
-    project = Project.create(tmp_path / "room")
+def test_damaged_files_are_named(project: Project) -> None:
     with pytest.raises(ProjectError, match="no scene yet"):
         project.load_scene()
     project.scene_path.write_text("{")
@@ -93,24 +88,21 @@ def test_damaged_files_are_named(tmp_path: Path) -> None:
         Project.open(project.folder)
 
 
-def test_texture_names_cannot_leave_the_project(tmp_path: Path) -> None:
-    project = Project.create(tmp_path / "room")
+def test_texture_names_cannot_leave_the_project(project: Project, tmp_path: Path) -> None:
     project.save_textures({"../../outside": np.zeros((4, 4, 3), np.uint8)})
     assert not (tmp_path.parent / "outside.jpg").exists()
     assert (project.folder / "textures" / "outside.jpg").exists()
 
 
-def test_how_long_stages_took_is_noted(tmp_path: Path) -> None:
-    project = Project.create(tmp_path / "room")
+def test_how_long_stages_took_is_noted(project: Project) -> None:
     project.save_stage_runs([StageRun("depth", "Depth()", 0.25, cached=False)])
     noted = json.loads((project.folder / "project.json").read_text())["stages"]
     assert noted == [{"stage": "depth", "used": "Depth()", "seconds": 0.25, "cached": False}]
 
 
 def test_pictures_beyond_the_limit_and_those_that_are_missing_are_left_out(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    project: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    project = Project.create(tmp_path / "room")
     wall = Plane("wall_1", "wall", np.array([[0, 0, 0], [2, 0, 0], [2, 0, 2.0]]), texture="a")
     floor = Plane("floor", "floor", np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0.0]]), texture="b")
     lost = replace(floor, id="floor_2", texture="c")
@@ -171,8 +163,7 @@ def test_shapes_of_two_projects_come_together(tmp_path: Path) -> None:
         first.take_shapes(second)
 
 
-def test_uploads_are_kept_as_they_came_until_they_are_taken_back(tmp_path: Path) -> None:
-    project = Project.create(tmp_path / "room")
+def test_uploads_are_kept_as_they_came_until_they_are_taken_back(project: Project) -> None:
     assert project.uploads() == {}
     project.save_upload("depth", b"depth")
     project.save_upload("photo", b"photo")
@@ -183,16 +174,14 @@ def test_uploads_are_kept_as_they_came_until_they_are_taken_back(tmp_path: Path)
     assert project.uploads() == {"photo": b"photo"}
 
 
-def test_the_photo_is_that_of_the_inputs(tmp_path: Path) -> None:
-    project = Project.create(tmp_path / "room")
+def test_the_photo_is_that_of_the_inputs(project: Project) -> None:
     assert (project.has_photo, project.photo()) == (False, None)
     project.save_inputs(example_inputs())
     assert project.has_photo
     assert project.photo() == example_inputs().photo
 
 
-def test_a_version_is_kept_once_a_minute_and_before_all_is_deleted(tmp_path: Path) -> None:
-    project = Project.create(tmp_path / "room")
+def test_a_version_is_kept_once_a_minute_and_before_all_is_deleted(project: Project) -> None:
     one, other = (replace(_stack(), metrics={"number": number}) for number in (1.0, 2.0))
     assert not project.save_scene(_stack()), "there was none before"
     assert project.save_scene(one)
@@ -205,16 +194,14 @@ def test_a_version_is_kept_once_a_minute_and_before_all_is_deleted(tmp_path: Pat
     ("version", "reason"),
     [(2, "by a newer Diorama"), ("1", "no version number"), (True, "no version number"), (None, "no version number")],
 )
-def test_projects_of_other_versions_are_not_opened(tmp_path: Path, version: object, reason: str) -> None:
-    project = Project.create(tmp_path / "room")
+def test_projects_of_other_versions_are_not_opened(project: Project, version: object, reason: str) -> None:
     document = {**json.loads((project.folder / "project.json").read_text()), "version": version}
     (project.folder / "project.json").write_text(json.dumps(document))
     with pytest.raises(ProjectError, match=reason):
         Project.open(project.folder)
 
 
-def test_a_project_whose_file_is_gone_is_one_line(tmp_path: Path) -> None:
-    project = Project.create(tmp_path / "room")
+def test_a_project_whose_file_is_gone_is_one_line(project: Project) -> None:
     (project.folder / "project.json").unlink()
     with pytest.raises(ProjectError, match=r"project\.json cannot be read \(No such file"):
         project.info()
@@ -256,8 +243,7 @@ def test_of_a_damaged_scene_the_newest_version_that_can_be_read_is_shown(
         project.newest_scene()
 
 
-def test_pictures_of_objects_are_read_and_pixels_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    project = Project.create(tmp_path / "room")
+def test_pictures_of_objects_are_read_and_pixels_are_counted(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
     materials = (PhotoMaterial("wood", (0.5, 0.5, 0.5), "a"), PhotoMaterial("fabric", (0.5, 0.5, 0.5)))
     first, *others = _stack().objects
     scene = replace(_stack(), objects=(replace(first, photo_materials=materials), *others))

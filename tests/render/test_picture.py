@@ -194,11 +194,6 @@ def test_empty_scene_is_plain_background() -> None:
     assert picture(Scene(), LIBRARY, view="orbit:10", size=SMALL).shape == (120, 160, 3)
 
 
-def test_same_scene_same_bytes() -> None:
-    first = picture(SCENE, LIBRARY, size=SMALL)
-    assert first.tobytes() == picture(SCENE, LIBRARY, size=SMALL).tobytes()
-
-
 def test_a_photographed_plane_is_not_lit_a_second_time() -> None:
     """A grey photo on the ceiling, which no lamp reaches: nearly its own grey; as bare material it is darker."""
     grey = np.full((8, 8, 3), 180, np.uint8)

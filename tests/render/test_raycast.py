@@ -14,6 +14,7 @@ from diorama_core.render.raycast import (
     OrthographicView,
     PinholeView,
     bands,
+    pixel_centres,
     pixel_footprint,
 )
 from diorama_core.scene.types import Camera, Intrinsics, Pose
@@ -51,7 +52,7 @@ def test_the_nearer_mesh_hides_the_farther() -> None:
 
 
 def test_what_rays_meet_is_what_the_buffers_show() -> None:
-    rays = PinholeView(camera()).all_rays()
+    rays = PinholeView(camera()).rays(pixel_centres(64, 48))
     for boxes in ([], [box_at((0, 5, 0)), box_at((1.6, 4, 0))]):
         caster = MeshCaster(boxes)
         np.testing.assert_array_equal(caster.instances(rays), caster.buffers(camera()).instance)

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
-from PIL import Image
 
-from diorama_core.library.catalogue import built_in_library
-from diorama_core.render.views import StudioView, contact_sheet, render_shape, studio_camera
+from diorama_core.render.views import StudioView, render_shape, studio_camera
 from diorama_core.scene.types import box_corners
 from tests.primitives import PrimitiveLibrary
 
@@ -31,19 +27,3 @@ def test_camera_frames_the_box_from_any_side() -> None:
             pixels = camera.project(corners)
             assert (pixels >= -0.01).all()
             assert (pixels <= np.array([120.01, 80.01])).all()
-
-
-def test_every_shape_gets_its_place(tmp_path: Path) -> None:
-    shapes = built_in_library(tmp_path).in_category("sofa")[:5]
-    asked: list[str] = []
-
-    def red(shape) -> Image.Image:
-        asked.append(shape.id)
-        return Image.new("RGB", (10, 10), (200, 0, 0))
-
-    page = contact_sheet(shapes, red, 40, 3)
-    assert asked == [s.id for s in shapes]
-    assert page.size == (120, 2 * 58)
-    assert page.getpixel((20, 20)) == (200, 0, 0)
-    assert page.getpixel((60, 58 + 20)) == (200, 0, 0)
-    assert page.getpixel((100, 58 + 20)) != (200, 0, 0)

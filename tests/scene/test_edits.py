@@ -73,7 +73,6 @@ def test_moving_carries_what_is_supported_up(scene: Scene, pose: Pose, data: st.
 
 
 def _stack() -> Scene:
-    scene = Scene(architecture=Scene().architecture)
     scene = Scene(architecture=Architecture((FLOOR,)))
     size = (0.4, 0.4, 0.4)
     for i, name in enumerate(["table_1", "tray_1", "cup_1"]):

@@ -14,11 +14,10 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import lsq_linear
 
-from diorama_core.arrangement.surfaces import RestingSurface, box_misfit, is_wall_like
+from diorama_core.arrangement.surfaces import RestingSurface, is_wall_like
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.problem.problem import Problem
 from diorama_core.layout.settings import LayoutSettings
-from diorama_core.scene.types import box_corners
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,12 +67,12 @@ def _chains(problem: Problem, observations: PhotoObservations) -> _Chains:
         if i in own_foot:
             rows[i, own_foot[i]] = 1.0
             continue
-        j, place = int(problem.parent[i]), _find_observed_place(problem, i)
+        j, place = int(problem.parent[i]), _place(problem, i)
         if j in column:
             rows[i], constant[i] = rows[j], constant[j]
             rows[i, column[j]] += place.level / problem.shape_size[j, 2] + 0.5
         else:
-            constant[i] = place.level if j < 0 else _find_observed_level(problem, i)
+            constant[i] = problem.to_world(i, place).level
     return _Chains(tuple(members), rows, constant)
 
 
@@ -87,24 +86,10 @@ def _is_sought(problem: Problem, observations: PhotoObservations, i: int) -> boo
     return upright and float(surface.normal[2]) > problem.settings.upward
 
 
-def _find_observed_place(problem: Problem, i: int) -> RestingSurface:
-    """The place on its supporter that agrees best with where an object was observed, as `problem.levels` has it."""
-    j, size = int(problem.parent[i]), problem.shape_size[i] * problem.scale[i]
-    if j < 0 or len(problem.levels[i]) < 2:
-        surface = problem.surface[i]
-        assert surface is not None, "it rests on something"
-        return surface
-    corners = problem.p[i] + box_corners(size) @ problem.R[i].T
-    places = problem.levels[i]
-    return min(
-        places, key=lambda s: box_misfit(corners, size, s.transform(problem.R[j], problem.p[j], problem.scale[j]))
-    )
-
-
-def _find_observed_level(problem: Problem, i: int) -> float:
-    """Height of the place of an object on its supporter as observed."""
-    j = int(problem.parent[i])
-    return _find_observed_place(problem, i).transform(problem.R[j], problem.p[j], problem.scale[j]).level
+def _place(problem: Problem, i: int) -> RestingSurface:
+    place = problem.place_of(i, problem)
+    assert place is not None, "it rests on something"
+    return place
 
 
 def _solve_heights(
@@ -124,7 +109,8 @@ def _solve_heights(
     lines, wanted = [], []
     for k, i in enumerate(chains.members):
         is_unknown = np.arange(unknowns) == k
-        fits = int(problem.parent[i]) < 0 or abs(_find_observed_level(problem, i) - foot[i]) <= problem.settings.load_m
+        level = problem.to_world(i, _place(problem, i)).level
+        fits = int(problem.parent[i]) < 0 or abs(level - foot[i]) <= problem.settings.load_m
         hidden = [foot_hidden[i], observations.hidden[i, 1]]
         weight = np.where(hidden, problem.settings.hidden, 1.0) / _apparent_height_m(observations, i)
         if fits:

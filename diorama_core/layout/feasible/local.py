@@ -88,7 +88,7 @@ class DragSolver:
         if supported is None or problem.contact[i][2] != -1.0:
             return problem, None
         j = int(problem.parent[i])
-        world = supported if j < 0 else supported.transform(problem.R[j], problem.p[j], problem.scale[j])
+        world = problem.to_world(i, supported)
         foot = problem.p[i] - 0.5 * problem.R[i][:, 2] * problem.shape_size[i][2] * problem.scale[i][2]
         if j >= 0 and overhang_m(world, foot) <= self.leaves_m:
             return problem, None

@@ -1,7 +1,5 @@
 """The default recipe: exact structure first, then the least move that takes collisions away.
 
-Sizes at which colliding objects fit where they were seen.
-
 A retrieved shape differs from the object: its arms do not pass under a desk, its frame is too wide for a gap. Moving it
 out of the way can take it farther from where the photo shows it than a slightly smaller size does; both are costed
 alike.
@@ -242,8 +240,7 @@ def _explain_smaller(problem: Problem, wanted: Problem, structure: Structure) ->
 def fit_sizes(program: Program, outline_cost: Float[np.ndarray, " n"]) -> Structure:
     """The structure with colliding objects smaller where that costs less than the moves it saves.
 
-    Objects that hold up others keep their sizes. `outline_cost` is what a metre of outline counts, by object, in the
-    unit of `Program.cost`.
+    Objects that hold up others keep their sizes.
 
     Args:
         program: the moves that are possible, and what they cost.

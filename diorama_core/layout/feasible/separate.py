@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from diorama_core.arrangement.surfaces import RestingSurface, plane_surface
+from diorama_core.arrangement.surfaces import plane_surface
 from diorama_core.geometry.planes import is_in_polygon
 from diorama_core.geometry.sat import PairAxes, PosedBodies, pair_axes, place_bodies
 from diorama_core.layout.escape import exits, ring
@@ -103,14 +103,15 @@ def build_program(
         cost += np.tensordot(J, np.matmul(seen, J), axes=([0, 1], [0, 1]))
     bodies = place_bodies(problem.packed, structure.R, structure.p, structure.scale)
     bound = -np.einsum("bc,bcv->bv", structure.bound_normal, jacobian[structure.bound_owner])
-    wall_rows, wall_need = _wall_rows(problem, structure, bodies, J)
+    settled = problem.with_poses(structure.R, structure.p, structure.scale)
+    wall_rows, wall_need = _wall_rows(settled, bodies, J)
     rows, need = np.vstack([bound, wall_rows]), np.concatenate([-structure.bound_slack, wall_need])
     alive = np.linalg.norm(rows, axis=1) > 1e-9
     return Program(
         problem,
         structure,
         bodies,
-        may_meet(problem, bodies, [_surface_in_world(structure, problem, i) for i in range(n)]),
+        may_meet(problem, bodies, [s and settled.to_world(i, s) for i, s in enumerate(structure.surface)]),
         J,
         np.abs(jacobian).max(axis=1, initial=0.0) > 1e-12,
         rows[alive],
@@ -119,15 +120,7 @@ def build_program(
     )
 
 
-def _surface_in_world(structure: Structure, problem: Problem, i: int) -> RestingSurface | None:
-    """Where an object rests, in the world."""
-    place, j = structure.surface[i], int(problem.parent[i])
-    return place if place is None or j < 0 else place.transform(structure.R[j], structure.p[j], structure.scale[j])
-
-
-def _wall_rows(
-    problem: Problem, structure: Structure, bodies: PosedBodies, J: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _wall_rows(problem: Problem, bodies: PosedBodies, J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Every object stays in front of the walls it could reach, as far as those were seen.
 
     Round the corner of a wall that stands into the room an object is behind that wall's plane and rightly so: one whose
@@ -136,19 +129,18 @@ def _wall_rows(
     rows, need = [np.zeros((0, J.shape[2]))], [np.zeros(0)]
     fixed = {(i, w) for i, w, _ in problem.adheres}
     starts = np.searchsorted(bodies.owner, np.arange(problem.count))
-    radius = 0.5 * np.linalg.norm(problem.shape_size * structure.scale, axis=1)
-    settled = problem.with_poses(structure.R, structure.p, structure.scale)
-    in_room = is_in_polygon(structure.p[:, :2], problem.floor_outline)
+    radius = 0.5 * np.linalg.norm(problem.shape_size * problem.scale, axis=1)
+    in_room = is_in_polygon(problem.p[:, :2], problem.floor_outline)
     for w, wall in enumerate(problem.walls if problem.count else ()):
         if not wall.is_seen:
             continue
         surface = plane_surface(wall)
-        ahead = structure.p @ wall.normal - wall.offset
-        beside = (structure.p @ surface.outward.T - surface.offset).max(axis=1)
+        ahead = problem.p @ wall.normal - wall.offset
+        beside = (problem.p @ surface.outward.T - surface.offset).max(axis=1)
         reached = problem.free & (beside <= radius) & (ahead >= -radius - 0.5)
         reached &= ~(in_room & (beside > 0) & (ahead < 0))
         reached &= np.array([problem.on_plane[i] != wall.id and (i, w) not in fixed for i in range(problem.count)])
-        reached[[i for i in np.flatnonzero(reached) if settled.passes(wall, int(i))]] = False
+        reached[[i for i in np.flatnonzero(reached) if problem.passes(wall, int(i))]] = False
         nearest = np.minimum.reduceat((bodies.vertices @ wall.normal).min(axis=1), starts)
         rows.append(np.einsum("c,ncv->nv", wall.normal, J[reached]))
         need.append(wall.offset - nearest[reached])

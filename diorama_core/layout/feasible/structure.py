@@ -10,11 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from diorama_core.arrangement.surfaces import RestingSurface, box_misfit
+from diorama_core.arrangement.surfaces import RestingSurface
 from diorama_core.layout.feasible.photo_observations import PhotoObservations
 from diorama_core.layout.feasible.settle import Walk, settle
 from diorama_core.layout.problem.problem import Problem
-from diorama_core.scene.types import box_corners
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,41 +60,20 @@ def exact_structure(
     """
     n = problem.count
     walk = Walk(problem.R.copy(), problem.p.copy(), problem.scale.copy(), np.zeros((n, 3, 2)), list(problem.surface))
+    now = problem.with_poses(walk.R, walk.p, walk.scale)  # and so wherever the walk has brought them
     against: dict[int, list[tuple[int, np.ndarray]]] = {}
     for i, w, face in problem.adheres:
         against.setdefault(i, []).append((w, face))
     for i in problem.top_down:
         if problem.free[i] and (only is None or i in only):
-            walk.surface[i] = surface = _level(problem, walk, i)
+            walk.surface[i] = surface = now.place_of(i, problem)
             if surface is None:
                 walk.basis[i] = np.eye(3)[:, :2]
             else:
-                settle(
-                    problem,
-                    walk,
-                    i,
-                    _surface_in_world(walk, problem, i, surface),
-                    against.get(i, []),
-                    ray,
-                    observations,
-                    eye,
-                )
+                place = now.to_world(i, surface)
+                settle(problem, walk, i, place, against.get(i, []), ray, observations, eye)
     owners = np.array(walk.owners, dtype=int)
     return Structure(
         walk.R, walk.p, walk.scale, walk.basis, owners,
         np.array(walk.normals).reshape(-1, 3), np.array(walk.slacks), tuple(walk.surface), tuple(walk.reasons),
     )  # fmt: skip
-
-
-def _level(problem: Problem, walk: Walk, i: int) -> RestingSurface | None:
-    """The place on a supporter as it stands now that agrees best with where the object was observed."""
-    if len(problem.levels[i]) < 2:
-        return problem.surface[i]
-    size = problem.shape_size[i] * problem.scale[i]
-    corners = problem.p[i] + box_corners(size) @ problem.R[i].T
-    return min(problem.levels[i], key=lambda s: box_misfit(corners, size, _surface_in_world(walk, problem, i, s)))
-
-
-def _surface_in_world(walk: Walk, problem: Problem, i: int, surface: RestingSurface) -> RestingSurface:
-    j = int(problem.parent[i])
-    return surface if j < 0 else surface.transform(walk.R[j], walk.p[j], walk.scale[j])

@@ -2,9 +2,8 @@
 
 Objects are sorted by id, so that no result depends on the order in which a scene lists them.
 
-Where objects touch what holds them up: the points of a shape near its contact face.
-
-A round table stands within a floor that the corners of its box overhang; a lamp stands on its base, not on its shade.
+Objects touch what holds them up with the points of their shape near its contact face. A round table stands within a
+floor that the corners of its box overhang; a lamp stands on its base, not on its shade.
 """
 
 from __future__ import annotations
@@ -18,6 +17,7 @@ from jaxtyping import Bool, Float, Int
 
 from diorama_core.arrangement.surfaces import (
     RestingSurface,
+    box_misfit,
     choose_contact,
     choose_surface,
     complete_edges,
@@ -169,6 +169,19 @@ class Problem:
             np.array([pose.position for pose in poses]).reshape(-1, 3),
             np.array([pose.scale for pose in poses]).reshape(-1, 3),
         )
+
+    def to_world(self, index: int, place: RestingSurface) -> RestingSurface:
+        """A place on an object's supporter where the supporter is; a plane is in the world as it is."""
+        j = int(self.parent[index])
+        return place if j < 0 else place.transform(self.R[j], self.p[j], self.scale[j])
+
+    def place_of(self, index: int, observed: Problem) -> RestingSurface | None:
+        """The place on an object's supporter, as this stands, that agrees best with where the object was observed."""
+        if len(self.levels[index]) < 2:
+            return self.surface[index]
+        size = observed.shape_size[index] * observed.scale[index]
+        corners = observed.p[index] + box_corners(size) @ observed.R[index].T
+        return min(self.levels[index], key=lambda s: box_misfit(corners, size, self.to_world(index, s)))
 
     @property
     def free_poses(self) -> dict[str, Pose]:

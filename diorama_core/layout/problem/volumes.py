@@ -116,8 +116,6 @@ def may_meet(
 ) -> Bool[np.ndarray, "b b"]:
     """Which pairs of parts must not overlap: those of unrelated objects, and what encloses a place with what is there.
 
-    `surface` has the place of every object, in the world; None without one.
-
     Args:
         problem: who holds up whom.
         bodies: every part, posed.

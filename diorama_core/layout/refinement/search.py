@@ -101,10 +101,9 @@ class Search:
         return _best_first([_Try(float(gain[k]), near, int(k), look) for k in better])
 
     def _freedom(self, poses: PoseBatch, i: int) -> Freedom:
-        surface, parent = self.problem.surface[i], int(self.problem.parent[i])
+        surface = self.problem.surface[i]
         assert surface is not None, "what nothing holds does not move"
-        if parent >= 0:
-            surface = surface.transform(poses.R[parent], poses.position[parent], poses.scale[parent])
+        surface = self.problem.with_poses(poses.R, poses.position, poses.scale).to_world(i, surface)
         is_round = self.picture.casters[i].round_from_above
         return freedom(self.problem, i, surface, sized=self.sized[i], is_round=is_round, settings=self.settings)
 

@@ -15,7 +15,7 @@ from diorama_core.io.assets import has_own_recogniser
 from diorama_core.library.labels import is_named, meanings
 from diorama_core.library.taxonomy import ARCHITECTURE_WORDS, UNKNOWN
 from diorama_core.models.boxes import Detections, areas, join, overlaps
-from diorama_core.models.recogniser import Recogniser, own_recogniser
+from diorama_core.models.recogniser import ALIKE_IOU, Recogniser, own_recogniser
 from diorama_core.progress import Progress
 from diorama_core.protocols import DetectionStage
 from diorama_core.retrieval.kinds_together import carriers, kinds_together
@@ -112,7 +112,7 @@ def clickable(recogniser: Recogniser, photo: Photo, known: Sequence[LabelledBox]
         photo: the photo.
         known: what a network found in it, which learnt from photos: these boxes count as sure.
     """
-    faint = recogniser.alternatives(photo.rgb, FAINT, MAX_FAINT)
+    faint = recogniser.propose(photo.rgb, FAINT, MAX_FAINT, ALIKE_IOU)
     corners = np.array([k.box for k in known], dtype=float).reshape(-1, 4)
     return join((faint, Detections(corners, np.ones(len(known)), np.zeros(len(known), dtype=int))))
 

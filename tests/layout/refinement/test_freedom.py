@@ -31,11 +31,9 @@ def of(
 ) -> tuple[Freedom, Problem, int]:
     problem = build_problem(scene, room.library, adherence_m=0.004)
     i = problem.ids.index(name)
-    surface, parent = problem.surface[i], int(problem.parent[i])
+    surface = problem.surface[i]
     assert surface is not None
-    if parent >= 0:
-        surface = surface.transform(problem.R[parent], problem.p[parent], problem.scale[parent])
-    return freedom(problem, i, surface, sized=sized, is_round=is_round), problem, i
+    return freedom(problem, i, problem.to_world(i, surface), sized=sized, is_round=is_round), problem, i
 
 
 def changed_corners(free: Freedom, problem: Problem, i: int, changes: np.ndarray) -> np.ndarray:

@@ -28,7 +28,7 @@ def refined(settled: Scene, observed: Scene, objects: tuple, report: LayoutRepor
     return stage.refine(settled, report, observed, objects, Progress())[0]
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 3])
 def test_rooms_agree_better_with_their_masks_and_are_as_sound(seed: int) -> None:
     made = generate_room(seed, 14)
     truth, observed = (replace(scene, camera=looking_down()) for scene in (made.truth, made.observed))

@@ -25,7 +25,7 @@ def best(v: View, segments: np.ndarray, focal: float | None) -> FrameFit:
     return search_frames(Lines.of(segments, v.intrinsics), focal)[0]
 
 
-@settings(max_examples=15)
+@settings(max_examples=8)
 @given(PITCHES, ROLLS, st.floats(-44, 44), st.floats(0.6, 1.1))
 def test_gravity_within_half_a_degree_where_the_focal_length_is_known(
     pitch: float, roll: float, heading: float, focal: float
@@ -36,7 +36,7 @@ def test_gravity_within_half_a_degree_where_the_focal_length_is_known(
     assert np.rad2deg(frame_difference_rad(fit.R_world_camera, room_frame(v))) < 1.5
 
 
-@pytest.mark.parametrize("heading", [-33, -20, 18, 30])
+@pytest.mark.parametrize("heading", [-33, 18])
 @pytest.mark.parametrize("focal", [0.65, 0.78, 0.95])
 def test_focal_length_within_two_percent_from_a_two_point_view(heading: float, focal: float) -> None:
     v = view(pitch_deg=12, roll_deg=2, heading_deg=heading, focal=focal)

@@ -94,7 +94,7 @@ def ious(objects: tuple[DetectedObject, ...], geometry: ObjectGeometry) -> np.nd
     return box_iou(found, np.array([o.box for o in objects]))
 
 
-@settings(max_examples=4)
+@settings(max_examples=2)
 @given(height_m=st.floats(1.1, 1.75), pitch_deg=st.floats(8.0, 20.0), yaw_deg=st.floats(-4.0, 4.0))
 def test_a_room_of_usual_sizes_is_recovered(height_m: float, pitch_deg: float, yaw_deg: float) -> None:
     R = rotation(pitch_deg, yaw_deg)
@@ -178,7 +178,7 @@ def test_no_objects_means_the_usual_camera_height() -> None:
 boxes = st.tuples(st.floats(-5, 640), st.floats(-5, 480), st.floats(-5, 645), st.floats(-5, 485))
 
 
-@settings(max_examples=6)
+@settings(max_examples=4)
 @given(
     given_boxes=st.lists(boxes, min_size=1, max_size=4),
     names=st.lists(st.sampled_from(["chair", "object", "pillow", "door", "ceiling lamp", "rug", "bed"]), min_size=4),

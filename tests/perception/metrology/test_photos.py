@@ -17,7 +17,7 @@ USUAL_WIDTHS_M = {"sofa": (0.7, 3.1), "bed": (0.9, 2.3)}
 """Armchairs are called sofas too; usual ones are 0.75 m wide."""
 
 
-@pytest.mark.parametrize("name", ["im3d_3", "im3d_5", "im3d_8", "scenegen_00002"])
+@pytest.mark.parametrize("name", ["im3d_3", "scenegen_00002"])
 def test_cuboids_explain_the_boxes_with_plausible_sizes(name: str, photos: list[PhotoEntry]) -> None:
     inputs = next(p for p in photos if p.id == name).inputs
     camera = EmbeddedCamera().estimate(inputs, Progress())
