@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+import transformers
 from tokenizers import Tokenizer, models, pre_tokenizers
-from transformers import MMGroundingDinoConfig, MMGroundingDinoForObjectDetection
 
 from diorama_core.models.grounding import TOKENS, GroundingDino
 from diorama_core.models.manifest import network
@@ -33,7 +33,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "num_heads": [1, 2, 3, 4],
     }
     small = {"hidden_size": 16, "num_hidden_layers": 1, "num_attention_heads": 2, "intermediate_size": 16}
-    config = MMGroundingDinoConfig(
+    config = transformers.MMGroundingDinoConfig(
         backbone_config={**swin, "window_size": 7, "out_features": ["stage2", "stage3", "stage4"]},
         text_config={"model_type": "bert", **small, "vocab_size": 1100, "max_position_embeddings": TOKENS},
         d_model=32,
@@ -46,7 +46,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
         num_queries=20,
         max_text_len=TOKENS,
     )
-    model = MMGroundingDinoForObjectDetection(config).eval()
+    model = transformers.MMGroundingDinoForObjectDetection(config).eval()
     for parameter in model.parameters():
         if parameter.dim() > 1:
             torch.nn.init.normal_(parameter, std=0.2)
@@ -70,7 +70,7 @@ def facade(copy: Path, tmp_path_factory: pytest.TempPathFactory) -> GroundingDin
 def test_it_finds_the_same_boxes_for_words_that_it_was_not_traced_with(
     copy: Path, facade: GroundingDino, rng: np.random.Generator
 ) -> None:
-    model = MMGroundingDinoForObjectDetection.from_pretrained(copy).eval()
+    model = transformers.MMGroundingDinoForObjectDetection.from_pretrained(copy).eval()
     rgb = rng.integers(0, 255, (60, 80, 3)).astype(np.uint8)
     phrases = ["chair", "lamp", "sofa"]
     pixels, shown = facade.pixels(rgb, SIDE)

@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
+import transformers
 from PIL import Image
 from scipy import ndimage
-from transformers.models.clip.image_processing_pil_clip import CLIPImageProcessorPil
-from transformers.models.owlv2.image_processing_pil_owlv2 import Owlv2ImageProcessorPil
-from transformers.models.sam.image_processing_pil_sam import SamImageProcessorPil
 
 from diorama_core.errors import UnavailableError
 from diorama_core.models.clip import DuoduoClip, OpenClip, clip_pixels
@@ -72,7 +70,7 @@ def test_owlv2_finds_the_same_boxes(owlv2: tuple[Any, Path], tmp_path: Path, pho
     model, graph = owlv2
     facade = Owlv2(graph, tiny_networks.clip_tokenizer(tmp_path / "tokenizer.json"), pool=SessionPool())
     phrases = ["a photo of chair", "a photo of red table"]
-    processor = Owlv2ImageProcessorPil()
+    processor = transformers.Owlv2ImageProcessorPil()
     pixels = processor(Image.fromarray(photo), return_tensors="pt")["pixel_values"]
     np.testing.assert_allclose(facade.pixels(photo), pixels.numpy(), atol=2e-3)
     ids, mask = facade.tokens(phrases)
@@ -137,14 +135,16 @@ def test_sams_trackers_draw_the_same_masks(
 
 def _prepared(photo: np.ndarray, boxes: np.ndarray) -> tuple[Any, torch.Tensor]:
     """What the processor makes of a photo, and boxes in its pixels."""
-    prepared = SamImageProcessorPil()(Image.fromarray(photo), return_tensors="pt")
+    prepared = transformers.SamImageProcessorPil()(Image.fromarray(photo), return_tensors="pt")
     (height, width), (inner_h, inner_w) = photo.shape[:2], (int(v) for v in prepared["reshaped_input_sizes"][0])
     return prepared, torch.from_numpy(boxes).float() * torch.tensor([inner_w / width, inner_h / height] * 2)
 
 
 def _best_mask(out: Any, prepared: Any) -> torch.Tensor:
     sizes = prepared["original_sizes"], prepared["reshaped_input_sizes"]
-    return SamImageProcessorPil().post_process_masks(out.pred_masks, *sizes)[0][0, int(out.iou_scores[0, 0].argmax())]
+    return transformers.SamImageProcessorPil().post_process_masks(out.pred_masks, *sizes)[0][
+        0, int(out.iou_scores[0, 0].argmax())
+    ]
 
 
 def test_hq_sam_draws_the_same_masks(hq_sam: tuple[Any, Path, Path], photo: np.ndarray) -> None:
@@ -202,7 +202,7 @@ def test_openclip_embeds_the_same(tmp_path: Path, photo: np.ndarray) -> None:
     model, text, image, views = tiny_networks.clip(tmp_path)
     tokenizer = tiny_networks.clip_tokenizer(tmp_path / "tokenizer.json")
     facade = OpenClip(text, image, tokenizer, pool=SessionPool())
-    pixels = CLIPImageProcessorPil()(Image.fromarray(photo), return_tensors="pt")["pixel_values"]
+    pixels = transformers.CLIPImageProcessorPil()(Image.fromarray(photo), return_tensors="pt")["pixel_values"]
     np.testing.assert_allclose(clip_pixels(photo), pixels.numpy(), atol=1e-5)
     with torch.no_grad():
         seen = torch.nn.functional.normalize(tiny_networks.clip_image(model, pixels), dim=1)

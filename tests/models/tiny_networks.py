@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import torch
+import transformers
 from tokenizers import Tokenizer, models, pre_tokenizers, processors
-from transformers import CLIPConfig, CLIPModel, Dinov2Config, Dinov2Model, Owlv2Config, Owlv2ForObjectDetection
 
 from diorama_core.models.manifest import network
 from diorama_core.models.onnx_export import write_graph as export
@@ -42,20 +42,22 @@ class Called(torch.nn.Module):
         return self.call(self.model, *given)
 
 
-def _owl(model: Owlv2ForObjectDetection, ids: torch.Tensor, mask: torch.Tensor, pixels: torch.Tensor) -> object:
+def _owl(
+    model: transformers.Owlv2ForObjectDetection, ids: torch.Tensor, mask: torch.Tensor, pixels: torch.Tensor
+) -> object:
     out = model(input_ids=ids, attention_mask=mask, pixel_values=pixels)
     return out.logits, out.pred_boxes
 
 
-def owlv2(path: Path) -> tuple[Owlv2ForObjectDetection, Path]:
+def owlv2(path: Path) -> tuple[transformers.Owlv2ForObjectDetection, Path]:
     torch.manual_seed(1)
     text = {"vocab_size": 32, "hidden_size": 16, "intermediate_size": 16, "num_hidden_layers": 1}
     vision = {"hidden_size": 16, "intermediate_size": 16, "num_hidden_layers": 1, "image_size": 960, "patch_size": 32}
     words = {"num_attention_heads": 2, "max_position_embeddings": 16, **MARKS}
-    config = Owlv2Config(
+    config = transformers.Owlv2Config(
         text_config=text | words, vision_config={**vision, "num_attention_heads": 2}, projection_dim=16
     )
-    model = Owlv2ForObjectDetection(config).eval()
+    model = transformers.Owlv2ForObjectDetection(config).eval()
     for head in (model.box_head, model.class_head, model.owlv2.vision_model.encoder):
         for parameter in head.parameters():
             torch.nn.init.normal_(parameter, std=0.3)
@@ -66,14 +68,16 @@ def owlv2(path: Path) -> tuple[Owlv2ForObjectDetection, Path]:
     return model, export(Called(model, _owl), arguments, path, names, ["logits", "pred_boxes"], dynamic)
 
 
-def _dino(model: Dinov2Model, pixels: torch.Tensor) -> torch.Tensor:
+def _dino(model: transformers.Dinov2Model, pixels: torch.Tensor) -> torch.Tensor:
     return model.layernorm(model.encoder(model.embeddings(pixels)).last_hidden_state)
 
 
-def dinov2(path: Path) -> tuple[Dinov2Model, Path]:
+def dinov2(path: Path) -> tuple[transformers.Dinov2Model, Path]:
     torch.manual_seed(4)
-    config = Dinov2Config(hidden_size=24, num_hidden_layers=4, num_attention_heads=2, image_size=224, patch_size=14)
-    model = Dinov2Model(config).eval()
+    config = transformers.Dinov2Config(
+        hidden_size=24, num_hidden_layers=4, num_attention_heads=2, image_size=224, patch_size=14
+    )
+    model = transformers.Dinov2Model(config).eval()
     for parameter in model.parameters():
         torch.nn.init.normal_(parameter, std=0.2)
     dynamic = {"pixel_values": {0: "b"}, "last_hidden_state": {0: "b"}}
@@ -81,25 +85,27 @@ def dinov2(path: Path) -> tuple[Dinov2Model, Path]:
     return model, export(Called(model, _dino), arguments, path, ["pixel_values"], ["last_hidden_state"], dynamic)
 
 
-def clip_text(model: CLIPModel, text: torch.Tensor) -> torch.Tensor:
+def clip_text(model: transformers.CLIPModel, text: torch.Tensor) -> torch.Tensor:
     return model.text_projection(model.text_model(input_ids=text.long()).pooler_output)
 
 
-def clip_image(model: CLIPModel, image: torch.Tensor) -> torch.Tensor:
+def clip_image(model: transformers.CLIPModel, image: torch.Tensor) -> torch.Tensor:
     return model.visual_projection(model.vision_model(pixel_values=image).pooler_output)
 
 
-def _many_views(model: CLIPModel, views: torch.Tensor) -> torch.Tensor:
+def _many_views(model: transformers.CLIPModel, views: torch.Tensor) -> torch.Tensor:
     """Views [1, V, 3, 224, 224] of a shape to one vector, as DuoduoCLIP's converted tower."""
     return clip_image(model, views[0]).mean(dim=0, keepdim=True)
 
 
-def clip(folder: Path, width: int = 512) -> tuple[CLIPModel, Path, Path, Path]:
+def clip(folder: Path, width: int = 512) -> tuple[transformers.CLIPModel, Path, Path, Path]:
     torch.manual_seed(5)
     common = {"hidden_size": 16, "intermediate_size": 16, "num_hidden_layers": 1, "num_attention_heads": 2}
     words, pictures = {"vocab_size": 32, "max_position_embeddings": 77}, {"image_size": 224, "patch_size": 32}
-    config = CLIPConfig(text_config=common | words | MARKS, vision_config=common | pictures, projection_dim=width)
-    model = CLIPModel(config).eval()
+    config = transformers.CLIPConfig(
+        text_config=common | words | MARKS, vision_config=common | pictures, projection_dim=width
+    )
+    model = transformers.CLIPModel(config).eval()
     graphs = (
         export(Called(model, call), (example,), folder / f"{name}.onnx", [name], ["embedding"], axes)
         for name, call, example, axes in (

@@ -6,22 +6,13 @@ from pathlib import Path
 from typing import TypeAlias
 
 import torch
-from transformers import (
-    Sam2Config,
-    Sam2Model,
-    Sam3TrackerConfig,
-    Sam3TrackerModel,
-    SamConfig,
-    SamHQConfig,
-    SamHQModel,
-    SamModel,
-)
+import transformers
 
 from diorama_core.models.onnx_export import write_graph as export
 from tests.models.small_graphs import HQ_SAM
 from tests.models.tiny_networks import Called
 
-_PyramidModel: TypeAlias = Sam2Model | Sam3TrackerModel
+_PyramidModel: TypeAlias = "transformers.Sam2Model | transformers.Sam3TrackerModel"
 
 _PROMPTS = {"hidden_size": 32}
 _DECODER = _PROMPTS | {"num_hidden_layers": 1, "num_attention_heads": 2, "mlp_dim": 32, "iou_head_hidden_dim": 32}
@@ -40,9 +31,9 @@ def _pyramid_masks(model: _PyramidModel, e0, e1, e2, points, labels, boxes):
     return out.iou_scores + 0.0 * points.sum() + 0.0 * labels.sum(), out.pred_masks, out.object_score_logits
 
 
-def sam2(folder: Path) -> tuple[Sam2Model, Path, Path]:
+def sam2(folder: Path) -> tuple[transformers.Sam2Model, Path, Path]:
     torch.manual_seed(2)
-    config = Sam2Config(
+    config = transformers.Sam2Config(
         vision_config={
             "backbone_config": {
                 "model_type": "sam2_hiera_det_model",
@@ -61,13 +52,13 @@ def sam2(folder: Path) -> tuple[Sam2Model, Path, Path]:
         prompt_encoder_config=_PROMPTS,
         mask_decoder_config=_DECODER | {"iou_head_depth": 2},
     )
-    model = Sam2Model(config).eval()
+    model = transformers.Sam2Model(config).eval()
     return model, *_exported(model, 1024, folder)
 
 
-def sam3_tracker(folder: Path) -> tuple[Sam3TrackerModel, Path, Path]:
+def sam3_tracker(folder: Path) -> tuple[transformers.Sam3TrackerModel, Path, Path]:
     torch.manual_seed(9)
-    config = Sam3TrackerConfig(
+    config = transformers.Sam3TrackerConfig(
         vision_config={
             "model_type": "sam3_vision_model",
             "backbone_config": {
@@ -85,7 +76,7 @@ def sam3_tracker(folder: Path) -> tuple[Sam3TrackerModel, Path, Path]:
         prompt_encoder_config=_PROMPTS,
         mask_decoder_config=_DECODER | {"iou_head_depth": 2},
     )
-    model = Sam3TrackerModel(config).eval()
+    model = transformers.Sam3TrackerModel(config).eval()
     return model, *_exported(model, 1008, folder)
 
 
@@ -101,7 +92,7 @@ def _exported(model: _PyramidModel, side: int, folder: Path) -> tuple[Path, Path
     return encoder, export(decoder, (*features, *EXAMPLE), folder / "decoder.onnx", given, outputs, PROMPT)
 
 
-def _hq_features(model: SamHQModel, picture: torch.Tensor) -> tuple[torch.Tensor, ...]:
+def _hq_features(model: transformers.SamHQModel, picture: torch.Tensor) -> tuple[torch.Tensor, ...]:
     """Normalising and padding inside the graph, as HQ-SAM's exporter writes it."""
     mean, std = torch.tensor([123.675, 116.28, 103.53]), torch.tensor([58.395, 57.12, 57.375])
     pixels = ((picture - mean) / std).permute(2, 0, 1)[None]
@@ -110,16 +101,16 @@ def _hq_features(model: SamHQModel, picture: torch.Tensor) -> tuple[torch.Tensor
     return embeddings, *inside
 
 
-def _hq_masks(model: SamHQModel, embeddings, inside, points, labels, mask, has_mask, size):
+def _hq_masks(model: transformers.SamHQModel, embeddings, inside, points, labels, mask, has_mask, size):
     seen = {"image_embeddings": embeddings, "intermediate_embeddings": list(inside)}
     out = model(**seen, input_boxes=points.reshape(1, 1, 4), multimask_output=True)
     nothing = 0.0 * (labels.sum() + mask.sum() + has_mask.sum() + size.sum())
     return out.pred_masks[:, 0], out.iou_scores[:, 0] + nothing, out.pred_masks[:, 0]
 
 
-def hq_sam(folder: Path) -> tuple[SamHQModel, Path, Path]:
+def hq_sam(folder: Path) -> tuple[transformers.SamHQModel, Path, Path]:
     torch.manual_seed(10)
-    config = SamHQConfig(
+    config = transformers.SamHQConfig(
         vision_config={
             "hidden_size": 16,
             "output_channels": 32,
@@ -134,7 +125,7 @@ def hq_sam(folder: Path) -> tuple[SamHQModel, Path, Path]:
         prompt_encoder_config=_PROMPTS,
         mask_decoder_config=_DECODER | {"vit_dim": 16},
     )
-    model = SamHQModel(config).eval()
+    model = transformers.SamHQModel(config).eval()
     picture = torch.zeros(768, 1024, 3)
     between = ["image_embeddings", "interm_embeddings.0", "interm_embeddings.1"]
     shape = {"input_image": {0: "height", 1: "width"}}
@@ -155,19 +146,19 @@ def hq_sam(folder: Path) -> tuple[SamHQModel, Path, Path]:
     return model, encoder, export(decoder, arguments, folder / "decoder.onnx", list(HQ_SAM), outputs, axes)
 
 
-def _sam_features(model: SamModel, pixels: torch.Tensor) -> tuple[torch.Tensor, ...]:
+def _sam_features(model: transformers.SamModel, pixels: torch.Tensor) -> tuple[torch.Tensor, ...]:
     return model.get_image_embeddings(pixels), model.get_image_wide_positional_embeddings()
 
 
-def _sam_masks(model: SamModel, points, labels, boxes, embeddings, positions):
+def _sam_masks(model: transformers.SamModel, points, labels, boxes, embeddings, positions):
     out = model(image_embeddings=embeddings, input_boxes=boxes, multimask_output=True)
     nothing = 0.0 * points.sum() + 0.0 * labels.sum() + 0.0 * positions.sum()
     return out.iou_scores + nothing, out.pred_masks
 
 
-def slimsam(folder: Path) -> tuple[SamModel, Path, Path]:
+def slimsam(folder: Path) -> tuple[transformers.SamModel, Path, Path]:
     torch.manual_seed(3)
-    config = SamConfig(
+    config = transformers.SamConfig(
         vision_config={
             "hidden_size": 16,
             "output_channels": 32,
@@ -180,7 +171,7 @@ def slimsam(folder: Path) -> tuple[SamModel, Path, Path]:
         prompt_encoder_config=_PROMPTS,
         mask_decoder_config=_DECODER,
     )
-    model = SamModel(config).eval()
+    model = transformers.SamModel(config).eval()
     pixels = torch.zeros(1, 3, 1024, 1024)
     between = ["image_embeddings", "image_positional_embeddings"]
     encoder = export(Called(model, _sam_features), (pixels,), folder / "encoder.onnx", ["pixel_values"], between)
