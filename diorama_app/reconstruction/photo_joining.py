@@ -74,7 +74,7 @@ def missing_for_joining(scene: Scene) -> str:
 
 
 def need_joinable(scene: Scene, inputs: Inputs | None) -> Inputs:
-    """What is said of the photo that others join; raises `EditRefused` where there is none, or no scene of it."""
+    """The inputs of the photo that others join; raises `EditRefused` where there is none, or no scene of it."""
     if inputs is None or scene.camera is None:
         raise EditRefused("build a scene from a first photo; then add others of the same room")
     return inputs

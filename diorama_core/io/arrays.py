@@ -1,4 +1,7 @@
-"""Arrays out of bytes that may be damaged: nothing is allocated that the bytes do not hold, nothing is unpickled."""
+"""Arrays to bytes, and out of bytes that may be damaged.
+
+Nothing is allocated that the bytes do not hold, and nothing is unpickled.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,8 @@ import io
 import math
 import re
 import zipfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.lib import format as npy
@@ -20,6 +24,13 @@ _USUAL = re.compile(
 )
 MAX_ARCHIVE_BYTES = 400_000_000
 """Bytes of all arrays of an archive, unpacked."""
+
+
+def npz_bytes(arrays: Mapping[str, np.ndarray], *, compressed: bool = False) -> bytes:
+    """The content of a `.npz` file with these arrays by name; `arrays_of` reads it."""
+    content, named = io.BytesIO(), dict[str, Any](arrays)
+    (np.savez_compressed if compressed else np.savez)(content, **named)
+    return content.getvalue()
 
 
 def array_of(content: bytes) -> np.ndarray:

@@ -6,14 +6,13 @@ import logging
 import os
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from io import BytesIO
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
 from diorama_core.errors import InputError
-from diorama_core.io.arrays import arrays_of
+from diorama_core.io.arrays import arrays_of, npz_bytes
 from diorama_core.io.atomic import write_atomically
 from diorama_core.io.bounded import read_bytes, shorten
 
@@ -93,9 +92,7 @@ def read_arrays(path: Path, *names: str, mark_use: bool = False) -> tuple[np.nda
 
 def write_arrays(path: Path, arrays: Mapping[str, np.ndarray], *, limit_bytes: int | None = None) -> None:
     """Write an `.npz` file like `write_derived`."""
-    data = BytesIO()
-    np.savez(data, **dict(arrays))  # type: ignore[arg-type]  # numpy's stub confuses them with its own option
-    write_derived(path, data.getvalue(), limit_bytes=limit_bytes)
+    write_derived(path, npz_bytes(arrays), limit_bytes=limit_bytes)
 
 
 def _make_room(folder: Path, room_bytes: int) -> None:

@@ -90,7 +90,7 @@ class _Found:
     category: str
     """Empty when nothing is near."""
     words: tuple[str, ...]
-    """That name it."""
+    """The words that name it."""
     note: str = ""
     """Message about words that only are near a name."""
 

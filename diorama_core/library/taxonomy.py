@@ -59,7 +59,7 @@ def _singulars(key: str) -> tuple[str, ...]:
 
 @cache
 def categories_by_word() -> Mapping[str, Category]:
-    """By name and synonym, in small letters, with blanks for all that is no letter or digit."""
+    """Categories by name and synonym, in small letters, with blanks for all that is no letter or digit."""
     table = {_key(c.name): c for c in CATEGORIES}
     for category in CATEGORIES:
         for word in category.synonyms:

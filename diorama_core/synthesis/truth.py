@@ -173,7 +173,7 @@ class Studio:
         return _develop(shot), np.where(instance < len(self.scene.objects), instance, -1).astype(np.int32)
 
     def empty_room_planes(self, camera: Camera) -> Int32[np.ndarray, "h w"]:
-        """For every pixel of a camera the index of the plane that it would show without objects (-1 for none)."""
+        """Index of the plane that each pixel of a camera would show without objects; -1 for none."""
         return self._room.buffers(camera).instance
 
     def _shot(self, camera: Camera) -> Shot:

@@ -35,9 +35,9 @@ from diorama_core.training.pictures import PictureFiles, category_names, make_pi
 from diorama_core.training.shape_views import ShapeViewFiles, make_shape_views
 from diorama_core.training.surfaces import SurfaceFiles, make_surfaces
 from diorama_core.training.train import (
-    Run,
     Schedule,
     Trainer,
+    TrainingRun,
     detector_trainer,
     namer_trainer,
     outliner_trainer,
@@ -174,7 +174,7 @@ def _trainer(
     network: str, pictures: Path, checkpoints: Path, steps: int | None = None, device: str = "cpu", workers: int = 1
 ) -> Trainer:
     checkpoints.mkdir(parents=True, exist_ok=True)
-    how = Run(SCHEDULES[network].lasting(steps), checkpoints / f"{network}.pt", device, workers)
+    how = TrainingRun(SCHEDULES[network].lasting(steps), checkpoints / f"{network}.pt", device, workers)
     if network == "outliner":
         return outliner_trainer(WindowFiles.of(pictures), how)
     if network == "surfaces":

@@ -14,6 +14,7 @@ from jaxtyping import Float32, Int, Int8, Int32, UInt8
 from PIL import Image
 
 from diorama_core.errors import InputError, LibraryError, SceneError
+from diorama_core.io.arrays import npz_bytes
 from diorama_core.io.atomic import write_atomically
 from diorama_core.library.form import MEASURED, form_at, value_indices
 from diorama_core.library.record import ShapeLibrary
@@ -238,9 +239,7 @@ def _pack(pictures: tuple[LabelledPicture, ...]) -> bytes:
             f"pixels_{k}": picture.pixels,
             f"forms_{k}": picture.forms,
         }
-    buffer = io.BytesIO()
-    np.savez(buffer, **arrays)  # type: ignore[arg-type]  # the keywords are names of arrays
-    return buffer.getvalue()
+    return npz_bytes(arrays)
 
 
 def make_files(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -15,6 +14,7 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 from diorama_core.errors import InputError, LibraryError, SceneError
+from diorama_core.io.arrays import npz_bytes
 from diorama_core.library.record import ShapeLibrary
 from diorama_core.models.efficientnet import MAP_CHANNELS
 from diorama_core.models.room_surfaces import CELL_PX, OUTPUTS, backbone_maps, elevation_sines
@@ -86,9 +86,7 @@ def _pack(pictures: tuple[SurfacePicture, ...]) -> bytes:
     for k, picture in enumerate(pictures):
         arrays |= {f"jpeg_{k}": encode_picture(picture.rgb), f"surface_{k}": picture.surface}
         arrays |= {f"rise_{k}": picture.rise.astype(np.float16)}
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]  # the keywords are names of arrays
-    return buffer.getvalue()
+    return npz_bytes(arrays, compressed=True)
 
 
 @lru_cache(maxsize=1000)

@@ -72,8 +72,8 @@ class Schedule:
 
 
 @dataclass(frozen=True)
-class Run:
-    """How long a network learns, and where."""
+class TrainingRun:
+    """The length and the place of one network's training."""
 
     schedule: Schedule
     checkpoint: Path
@@ -109,7 +109,7 @@ class Trainer:
     network: nn.Module
     loss: Callable[[nn.Module, tuple[Tensor, ...]], tuple[Tensor, str]]
     batch_of: Callable[[np.random.Generator], tuple[Tensor, ...]]
-    how: Run
+    how: TrainingRun
     averaged: nn.Module = field(init=False)
     step: int = field(init=False, default=0)
 
@@ -189,8 +189,14 @@ class Trainer:
         part.replace(self.how.checkpoint)
 
 
-def detector_trainer(files: PictureFiles, kinds: int, how: Run) -> Trainer:
-    """Everything needed to train the detector of so many categories."""
+def detector_trainer(files: PictureFiles, kinds: int, how: TrainingRun) -> Trainer:
+    """Everything needed to train the detector.
+
+    Args:
+        files: pictures to learn from.
+        kinds: number of categories.
+        how: how long, and where.
+    """
     torch.manual_seed(how.schedule.seed)
     centres, strides = (torch.from_numpy(a).to(how.device) for a in places(*SIZE))
 
@@ -215,7 +221,7 @@ def detector_batch(files: Pictures, count: int, rng: np.random.Generator) -> tup
     return _pictures_tensor(pixels), torch.from_numpy(np.stack(boxes)), torch.from_numpy(np.stack(kinds))
 
 
-def namer_trainer(files: PictureFiles, shapes: ShapeViewFiles, kinds: int, how: Run) -> Trainer:
+def namer_trainer(files: PictureFiles, shapes: ShapeViewFiles, kinds: int, how: TrainingRun) -> Trainer:
     """Everything needed to train the namer.
 
     Args:
@@ -277,7 +283,7 @@ def namer_batch(
     )
 
 
-def outliner_trainer(files: WindowFiles, how: Run) -> Trainer:
+def outliner_trainer(files: WindowFiles, how: TrainingRun) -> Trainer:
     """Everything needed to train the outliner."""
     torch.manual_seed(how.schedule.seed + 2)
 
@@ -315,7 +321,7 @@ def _pictures_tensor(pictures: Sequence[np.ndarray]) -> Tensor:
     return torch.from_numpy(np.ascontiguousarray(stacked)).float() / 255.0
 
 
-def surface_trainer(files: SurfaceFiles, how: Run) -> Trainer:
+def surface_trainer(files: SurfaceFiles, how: TrainingRun) -> Trainer:
     """Everything needed to train the head that tells a room's surfaces."""
     torch.manual_seed(how.schedule.seed + 3)
 

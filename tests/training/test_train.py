@@ -22,9 +22,9 @@ from diorama_core.training.networks import Detector, Namer, OutlineNetwork
 from diorama_core.training.pictures import PictureFiles
 from diorama_core.training.shape_views import ShapeViewFiles, ShapeViews
 from diorama_core.training.train import (
-    Run,
     Schedule,
     Trainer,
+    TrainingRun,
     detector_trainer,
     namer_trainer,
     outliner_trainer,
@@ -64,7 +64,7 @@ def window_files(folder: Path) -> WindowFiles:
 
 
 def trainer(kind: str, files: PictureFiles, path: Path) -> Trainer:
-    how = Run(Schedule(2, 2 if kind == "namer" else 1, save_every=1), path)
+    how = TrainingRun(Schedule(2, 2 if kind == "namer" else 1, save_every=1), path)
     if kind == "outliner":
         return outliner_trainer(window_files(path.parent), how)
     if kind == "detector":

@@ -135,7 +135,13 @@ class FeatureMatrix:
     def best_of(
         self, positions: Int[np.ndarray, "m"], query: Float[np.ndarray, "width"], k: int
     ) -> tuple[NearShape, ...]:
-        """The `k` best of some keys by their positions, scored in single precision."""
+        """The best of some keys, scored in single precision.
+
+        Args:
+            positions: of the keys.
+            query: features at unit length.
+            k: most results.
+        """
         exact = self.values[positions].astype(np.float32) @ np.asarray(query, np.float32)
         best = exact.max(axis=1)
         order = np.lexsort((positions, -best))[:k]
